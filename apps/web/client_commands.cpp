@@ -28,9 +28,10 @@ std::optional<std::array<double, 5>> lengths_in(std::string_view text) noexcept 
   return lengths;
 }
 
-std::optional<bool> truth_named(std::string_view text) noexcept {
-  if (text == "true") return true;
-  if (text == "false") return false;
+/// Returns whether the text is `yes` and not `no`; nothing if it is neither.
+std::optional<bool> truth_in(std::string_view text, std::string_view yes,
+                             std::string_view no) noexcept {
+  if (text == yes || text == no) return text == yes;
   return std::nullopt;
 }
 
@@ -45,7 +46,7 @@ struct ValueReader {
     return put(choice.named(text), choice.of(settings), choice.choices);
   }
   std::string operator()(const flow::SwitchSetting& on) const {
-    return put(truth_named(text), on.of(settings), "true or false");
+    return put(truth_in(text, "true", "false"), on.of(settings), "true or false");
   }
   std::string operator()(const flow::NumberSetting& number) const {
     return put(to_finite_number(text), number.of(settings), "a number");
@@ -162,16 +163,10 @@ std::optional<flow::Command> wrist_in(Words words) noexcept {
   return move;
 }
 
-std::optional<bool> switch_in(std::string_view word) noexcept {
-  if (word == "on") return true;
-  if (word == "off") return false;
-  return std::nullopt;
-}
-
 std::optional<flow::Command> clutch_in(Words words) noexcept {
   const auto hand = words.next();
   const auto finger = words.next();
-  const auto holds = switch_in(words.next());
+  const auto holds = truth_in(words.next(), "on", "off");
   if ((hand != "left" && hand != "right") || !holds || !words.are_over()) return std::nullopt;
   flow::SetClutch clutch{hand == "left" ? Side::left : Side::right, puppet::RigPlayer::all_fingers,
                          *holds};
@@ -214,7 +209,7 @@ std::optional<flow::Command> command_in(std::string_view text) noexcept {
   if (first == "clutch") return clutch_in(words);
   if (first == "role") return role_in(words);
   if (first == "mask") return mask_in(words);
-  const auto on = switch_in(words.next());
+  const auto on = truth_in(words.next(), "on", "off");
   if (!on || !words.are_over()) return std::nullopt;
   if (first == "symmetry") return flow::SetSymmetry{*on};
   if (first == "wire") return flow::DrawWire{*on};
