@@ -1,12 +1,13 @@
 #include "render/camera.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include <Eigen/Geometry>
 
+#include <nendo/base/number_in.hpp>
+#include <nendo/base/text.hpp>
 #include <nendo/base/units.hpp>
 
 #include "render/exact_trig.hpp"
@@ -23,15 +24,11 @@ std::optional<View> view_named(std::string_view text) noexcept {
   if (text == "side" || text == "right") return View{90, 0};
   if (text == "left") return View{-90, 0};
   if (text == "top") return View{0, 90};
-  View view;
-  const char* const end = text.data() + text.size();
-  const auto azimuth = std::from_chars(text.data(), end, view.azimuth_deg);
-  if (azimuth.ec != std::errc() || azimuth.ptr == end || *azimuth.ptr != ',') return std::nullopt;
-  const auto elevation = std::from_chars(azimuth.ptr + 1, end, view.elevation_deg);
-  if (elevation.ec != std::errc() || elevation.ptr != end) return std::nullopt;
-  if (!(std::abs(view.azimuth_deg) <= 360.0 && std::abs(view.elevation_deg) <= 90.0))
+  const auto azimuth = number_in<double>(cut(text, ','));
+  const auto elevation = number_in<double>(text);
+  if (!azimuth || !elevation || !(std::abs(*azimuth) <= 360.0 && std::abs(*elevation) <= 90.0))
     return std::nullopt;
-  return view;
+  return View{*azimuth, *elevation};
 }
 
 Matrix3d Camera::axes() const noexcept {

@@ -1,11 +1,12 @@
 #include "render/image.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include <png.h>
 
 #include <nendo/base/files.hpp>
+#include <nendo/base/number_in.hpp>
+#include <nendo/base/text.hpp>
 
 namespace nendo::render {
 
@@ -25,15 +26,13 @@ png_image header_of(Size size) {
 } // namespace
 
 std::optional<Size> size_named(std::string_view text) noexcept {
-  Size size;
-  const char* const end = text.data() + text.size();
-  const auto width = std::from_chars(text.data(), end, size.width);
-  if (width.ec != std::errc() || width.ptr == end || *width.ptr != 'x') return std::nullopt;
-  const auto height = std::from_chars(width.ptr + 1, end, size.height);
-  if (height.ec != std::errc() || height.ptr != end) return std::nullopt;
-  const auto fits = [](int pixels) { return pixels >= 16 && pixels <= Size::most; };
-  if (!fits(size.width) || !fits(size.height)) return std::nullopt;
-  return size;
+  const auto width = number_in<int>(cut(text, 'x'));
+  const auto height = number_in<int>(text);
+  const auto fits = [](const std::optional<int>& pixels) {
+    return pixels && *pixels >= 16 && *pixels <= Size::most;
+  };
+  if (!fits(width) || !fits(height)) return std::nullopt;
+  return Size{*width, *height};
 }
 
 Image::Image(Size size, Pixel colour)
