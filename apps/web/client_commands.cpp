@@ -122,11 +122,8 @@ public:
   /// The next one; empty at the end, and where two spaces meet.
   std::string_view next() noexcept {
     if (ended_) return {};
-    const auto space = rest_.find(' ');
-    const auto word = rest_.substr(0, space);
-    ended_ = space == std::string_view::npos;
-    if (!ended_) rest_.remove_prefix(space + 1);
-    return word;
+    ended_ = rest_.find(' ') == std::string_view::npos;
+    return cut(rest_, ' ');
   }
   bool are_over() const noexcept { return ended_; }
 

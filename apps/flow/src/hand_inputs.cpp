@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include <nendo/base/text.hpp>
 #include <nendo/flow/input_script.hpp>
 #include <nendo/hand/angle.hpp>
 #include <nendo/hand/joints.hpp>
@@ -30,15 +31,12 @@ std::optional<AngleSet> angles_named(std::string_view part) noexcept {
 std::optional<std::array<AngleSet, 2>> parse_layer(std::string_view text) noexcept {
   std::array<AngleSet, 2> hands{};
   for (bool is_last = false; !is_last;) {
-    const auto comma = text.find(',');
-    is_last = comma == std::string_view::npos;
-    const std::string_view word = text.substr(0, comma);
-    if (!is_last) text.remove_prefix(comma + 1);
-    const auto point = word.find('.');
-    const std::string_view side = word.substr(0, point);
+    is_last = text.find(',') == std::string_view::npos;
+    std::string_view part = cut(text, ',');
+    const bool is_whole = part.find('.') == std::string_view::npos;
+    const std::string_view side = cut(part, '.');
     if (side != "left" && side != "right") return std::nullopt;
-    const auto angles = point == std::string_view::npos ? std::optional(AngleSet::all())
-                                                        : angles_named(word.substr(point + 1));
+    const auto angles = is_whole ? std::optional(AngleSet::all()) : angles_named(part);
     if (!angles) return std::nullopt;
     hands[side == "left" ? 0 : 1].bits |= angles->bits;
   }

@@ -41,7 +41,7 @@ Result<void> check_subdividable(const deform::Mesh& mesh) {
 
 /// Faces keep the triangles that they had in `before`, at rest, although the shape becomes the
 /// rest.
-Result<deform::Mesh> cut(const deform::Mesh& before, const ModelOrigin& origin) {
+Result<deform::Mesh> cut_by_wire(const deform::Mesh& before, const ModelOrigin& origin) {
   deform::Mesh shaped = before;
   shaped.vertices = origin.shape;
   deform::CutOptions options;
@@ -64,7 +64,7 @@ Result<deform::Mesh> joined(const deform::Mesh& shaped, const ModelOrigin& origi
 }
 
 Result<deform::Mesh> made_of_shape(const deform::Mesh& before, const ModelOrigin& origin) {
-  if (origin.source == ModelSource::cut) return cut(before, origin);
+  if (origin.source == ModelSource::cut) return cut_by_wire(before, origin);
   const deform::Mesh shaped = deform::in_shape(before, origin.shape);
   if (origin.source == ModelSource::joined) return joined(shaped, origin);
   if (origin.source == ModelSource::copied) return deform::copied_part(shaped, origin.part);

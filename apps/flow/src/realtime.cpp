@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include <nendo/base/number_in.hpp>
+#include <nendo/base/text.hpp>
 
 namespace nendo::flow {
 namespace {
@@ -81,18 +82,16 @@ Result<std::vector<unsigned>> parse_cpus(const std::string& text, const std::str
   const Error bad{Errc::usage, option + " " + text + ": use CPUs from 0 to " +
                                    std::to_string(count - 1) + ", like 0 or 0,1 or 0-1"};
   std::vector<unsigned> cpus;
-  for (std::string_view rest = text;;) {
-    const std::size_t comma = rest.find(',');
-    const std::string_view item = rest.substr(0, comma);
-    const std::size_t dash = item.find('-');
-    const auto first = number_in<unsigned>(item.substr(0, dash));
-    const auto last =
-        dash == std::string_view::npos ? first : number_in<unsigned>(item.substr(dash + 1));
+  std::string_view rest = text;
+  for (bool is_last = false; !is_last;) {
+    is_last = rest.find(',') == std::string_view::npos;
+    std::string_view item = cut(rest, ',');
+    const bool is_one = item.find('-') == std::string_view::npos;
+    const auto first = number_in<unsigned>(cut(item, '-'));
+    const auto last = is_one ? first : number_in<unsigned>(item);
     if (!first || !last || *last < *first || *last >= count) return bad;
     for (unsigned cpu = *first; cpu <= *last; ++cpu)
       cpus.push_back(cpu);
-    if (comma == std::string_view::npos) break;
-    rest.remove_prefix(comma + 1);
   }
   std::sort(cpus.begin(), cpus.end());
   cpus.erase(std::unique(cpus.begin(), cpus.end()), cpus.end());

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <type_traits>
 
+#include <nendo/base/text.hpp>
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/hand/held_points.hpp>
 #include <nendo/puppet/rig.hpp>
@@ -133,12 +134,10 @@ std::optional<std::array<deform::Brush, 5>> parse_brushes(std::string_view text)
   std::array<deform::Brush, 5> brushes{};
   std::size_t count = 0;
   for (bool ended = false; !ended; ++count) {
-    const auto comma = text.find(',');
-    const auto brush = deform::brush_named(text.substr(0, comma));
+    ended = text.find(',') == std::string_view::npos;
+    const auto brush = deform::brush_named(cut(text, ','));
     if (!brush || count == brushes.size()) return std::nullopt;
     brushes[count] = *brush;
-    ended = comma == std::string_view::npos;
-    if (!ended) text.remove_prefix(comma + 1);
   }
   if (count == 1) brushes.fill(brushes[0]);
   if (count != 1 && count != brushes.size()) return std::nullopt;
