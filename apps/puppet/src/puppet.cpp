@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -84,7 +85,7 @@ double HandSignal::of(const HandState& hand) const noexcept {
 
 using deform::Mesh;
 using deform::Points;
-using deform::SurfacePlace;
+using deform::SurfacePosition;
 using Eigen::Index;
 using Eigen::Vector3d;
 
@@ -285,12 +286,12 @@ constexpr double max_alone = 0.05; // of them
 double part_alone(const Points& vertices, const std::vector<Index>& by_x, double at) {
   const double near = tolerance * deform::diagonal_of(vertices);
   const Index step = std::max<Index>(1, vertices.cols() / max_looked_at);
+  const auto x_of = [&](Index at) { return vertices(0, at); };
   Index looked_at = 0, alone = 0;
   for (Index v = 0; v < vertices.cols(); v += step, ++looked_at) {
     Vector3d image = vertices.col(v);
     image.x() = 2.0 * at - image.x();
-    auto other = std::lower_bound(by_x.begin(), by_x.end(), image.x() - near,
-                                  [&](Index one, double x) { return vertices(0, one) < x; });
+    auto other = std::ranges::lower_bound(by_x, image.x() - near, {}, x_of);
     bool found = false;
     for (; !found && other != by_x.end() && vertices(0, *other) <= image.x() + near; ++other)
       found = (vertices.col(*other) - image).norm() <= near;
@@ -306,10 +307,8 @@ double plane_of_symmetry(const Points& vertices) {
   const double middle = 0.5 * (vertices.row(0).minCoeff() + vertices.row(0).maxCoeff());
   if (std::abs(middle) <= tolerance * deform::diagonal_of(vertices)) return 0.0;
   std::vector<Index> by_x(static_cast<std::size_t>(vertices.cols()));
-  for (std::size_t at = 0; at < by_x.size(); ++at)
-    by_x[at] = static_cast<Index>(at);
-  std::sort(by_x.begin(), by_x.end(),
-            [&](Index one, Index other) { return vertices(0, one) < vertices(0, other); });
+  std::iota(by_x.begin(), by_x.end(), Index{0});
+  std::ranges::sort(by_x, {}, [&](Index at) { return vertices(0, at); });
   return part_alone(vertices, by_x, middle) <= max_alone ? middle : 0.0;
 }
 
