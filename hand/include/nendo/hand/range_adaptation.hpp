@@ -10,6 +10,7 @@
 // Testing", Econometrica 55, 1987): an end beyond the bound moves it much, an end short of it moves
 // it a little, so that the bounds contract for a hand that moves less.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -17,6 +18,7 @@
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/calibration.hpp>
 #include <nendo/hand/range_capture.hpp>
+#include <nendo/hand/swing_finder.hpp>
 
 namespace nendo::hand {
 
@@ -42,6 +44,28 @@ struct LearnedRanges {
 NENDO_API SensorCalibration line_of(std::size_t slot, const SensorRange& range) noexcept;
 /// Returns a state with the final lines of `ranges`, from which a learner can continue.
 NENDO_API LearnedRanges learned_from(const SensorRanges& ranges, Side side) noexcept;
+
+/// The time between a glove's samples, for values that drift with each sample.
+class SampleInterval {
+public:
+  /// Limits the drift after a pause, which would be a jump.
+  static constexpr double longest_s = 0.1;
+
+  /// Takes the next sample in time order, and returns the seconds since the previous one, at most
+  /// `longest_s`; 0 for the first. Wait-free, no allocation.
+  double push(const GloveSample& sample) noexcept {
+    const HostTime time = sample.time();
+    const double interval_s =
+        begun_ ? std::clamp(seconds_between(last_, time), 0.0, longest_s) : 0.0;
+    last_ = time;
+    begun_ = true;
+    return interval_s;
+  }
+
+private:
+  HostTime last_{};
+  bool begun_ = false; ///< last_ is valid
+};
 
 class NENDO_API RangeAdaptation {
 public:
@@ -98,11 +122,6 @@ private:
   std::optional<Side> side_; ///< side of the samples so far
 };
 
-// Tracks the slip of a calibrated glove on the hand. It assumes that no joint bends farther than
-// during the calibration: if a sensor now exceeds one of its ends from then and no longer reaches
-// the other, it has slipped, by the lesser of the two differences. A hand that only moves less, or
-// in the middle of its range, changes nothing. Gains and couplings stay. The bounds are expectiles
-// of the ends of swings, as in RangeAdaptation.
 /// The ends that a hand's sensors reached when its calibration was made; counts.
 struct CalibratedRange {
   Side side = Side::right;
@@ -114,6 +133,11 @@ constexpr double min_slip_counts(CountScale counts) noexcept {
   return 0.5 * counts.max_count / 255.0;
 }
 
+/// Tracks the slip of a calibrated glove on the hand. It assumes that no joint bends farther than
+/// during the calibration: if a sensor now exceeds one of its ends from then and no longer reaches
+/// the other, it has slipped, by the lesser of the two differences. A hand that only moves less, or
+/// in the middle of its range, changes nothing. Gains and couplings stay. The bounds are expectiles
+/// of the ends of swings, as in RangeAdaptation.
 class NENDO_API SlipAdaptation {
 public:
   /// Learning changes angles at most this fast.

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include <nendo/driver/sample.hpp>
-#include <nendo/hand/range_capture.hpp>
+#include <nendo/hand/swing_finder.hpp>
 
 namespace nendo::hand {
 
