@@ -11,8 +11,8 @@
 #include <nendo/base/text.hpp>
 #include <nendo/sculpting/find_wearer.hpp>
 
+#include "calibrate/demonstration.hpp"
 #include "calibrate/hand_drawing.hpp"
-#include "calibrate/practice_hand.hpp"
 #include "cli/cli.hpp"
 #include "cli/terminal.hpp"
 #include "gloves/monitor_screen.hpp"

@@ -6,9 +6,9 @@
 
 #include <doctest/doctest.h>
 
+#include "calibrate/demonstration.hpp"
 #include "calibrate/guide.hpp"
 #include "calibrate/hand_drawing.hpp"
-#include "calibrate/practice_hand.hpp"
 #include "calibrate/session.hpp"
 #include "reference/wearers.hpp"
 
