@@ -1,11 +1,13 @@
+#include <nendo/hand/calibration_exchange.hpp>
+
 #include <array>
+#include <optional>
 #include <string>
 
 #include <nendo/base/files.hpp>
 #include <nendo/base/table.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/base/units.hpp>
-#include <nendo/hand/calibration_exchange.hpp>
 
 #include "calibration_check.hpp"
 
@@ -182,14 +184,6 @@ Result<ExportedCalibration> calibration_csv_text(const Calibration& calibration)
   return result;
 }
 
-Result<std::string> read_calibration_text(const std::filesystem::path& path) {
-  return read_file(path, max_calibration_bytes, "calibration");
-}
-
-Result<void> write_calibration_text(const std::filesystem::path& path, std::string_view text) {
-  return replace_file(path, text);
-}
-
 Result<ImportedCalibration> parse_two_point(std::string_view text, std::string_view name) {
   LineReader lines(text);
   const auto bad = [&](const std::string& what) { return bad_line(name, lines.line(), what); };
@@ -216,6 +210,14 @@ Result<ImportedCalibration> parse_two_point(std::string_view text, std::string_v
   auto result = imported(read, name, false);
   if (result) result->notes.emplace_back("the palm arch is not in this format");
   return result;
+}
+
+Result<std::string> read_calibration_text(const std::filesystem::path& path) {
+  return read_file(path, max_calibration_bytes, "calibration");
+}
+
+Result<void> write_calibration_text(const std::filesystem::path& path, std::string_view text) {
+  return replace_file(path, text);
 }
 
 } // namespace nendo::hand
