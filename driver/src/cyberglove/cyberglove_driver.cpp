@@ -21,9 +21,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto state_answer = 300ms; ///< the unit has just answered other queries
-constexpr std::uint16_t max_hires_count = 4095;
-constexpr int tries_at_start = 4;   ///< to ask for the state before the stream begins
-constexpr int answers_at_start = 4; ///< two tries, each as long as one and a half of the slowest
+constexpr int tries_at_start = 4;    ///< to ask for the state before the stream begins
+constexpr int answers_at_start = 4;  ///< two tries, each as long as one and a half of the slowest
 constexpr auto pause_answer = 150ms;
 constexpr auto control_answer = 100ms; ///< while the stream waits
 
@@ -53,7 +52,7 @@ public:
     info.side = identity_.side;
     info.sensors = identity_.channels.sensors();
     info.rate_hz = identity_.rate_hz;
-    if (identity_.hires) info.counts.max_count = max_hires_count;
+    if (identity_.hires) info.counts.max_count = hi_res_max;
     info.abilities = identity_.abilities;
     info.facts = identity_.facts;
     return info;

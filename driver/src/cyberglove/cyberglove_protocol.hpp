@@ -101,8 +101,6 @@ inline constexpr char synced_header = 'Y'; ///< at the pace of an external signa
 inline constexpr std::size_t max_values = sensor_slots;
 inline constexpr std::size_t time_stamp_bytes = 5; ///< flags, then the ticks LSB first [V, p.28]
 inline constexpr std::size_t max_error_bytes = 4;  ///< one pair of each kind [V]
-inline constexpr std::size_t max_plain_bytes =
-    1 + max_values + time_stamp_bytes + 1 + max_error_bytes + 1;
 
 // The status byte [p.41].
 inline constexpr std::uint8_t status_plugged_in = 0x01;

@@ -34,10 +34,9 @@ inline constexpr int wired_baud = 19'200;   ///< 8N1 [V, J]
 inline constexpr int wireless_baud = 9'600; ///< and then the glove hears nothing [V]
 
 // Commands, one letter each.
-inline constexpr char reset_command = 'A';       ///< ends a stream; answered by `reset_answer` [V]
+inline constexpr char reset_command = 'A';       ///< ends a stream; answered by 0x55 [V]
 inline constexpr char information_command = 'G'; ///< answered by information_bytes [V]
 inline constexpr char stream_command = 'D';      ///< one sample after the other [V]
-inline constexpr std::byte reset_answer{0x55};   ///< [V]
 
 // A sample. Any byte of it may be 0x80. Some units send an extra 0x55 before or after it [V].
 // Wireless ones send an extra byte with the hand; it is ignored, because [V] and [J] disagree
