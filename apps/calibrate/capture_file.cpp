@@ -1,7 +1,5 @@
 #include "calibrate/capture_file.hpp"
 
-#include <chrono>
-#include <cmath>
 #include <fstream>
 #include <optional>
 #include <string>

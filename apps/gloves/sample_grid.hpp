@@ -4,7 +4,6 @@
 // that arrived after a grid time is never taken for it, however late the samples are read, and no
 // grid time is left out or moved.
 
-#include <chrono>
 #include <optional>
 
 #include <nendo/driver/sample.hpp>

@@ -3,7 +3,6 @@
 // never leaves the surface and never jumps, whatever the triangles are.
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <vector>
 

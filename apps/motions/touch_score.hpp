@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <nendo/driver/sample.hpp>
+#include <nendo/base/side.hpp>
 #include <nendo/hand/joints.hpp>
 
 namespace nendo::motions {

@@ -1,6 +1,5 @@
 #include <nendo/udev/installed_rules.hpp>
 
-#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <system_error>

@@ -1,7 +1,6 @@
 #include "discovery/candidates.hpp"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -12,7 +11,6 @@
 #include <nendo/udev/device_table.hpp>
 
 #include "discovery/programs.hpp"
-#include "transport/open_transport.hpp"
 #include "transport/port_access.hpp"
 #include "transport/serial_ports.hpp"
 #include "transport/sysfs.hpp"

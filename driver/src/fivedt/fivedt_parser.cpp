@@ -1,7 +1,6 @@
 #include "fivedt/fivedt_parser.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace nendo::driver::fivedt {
 namespace {

@@ -1,8 +1,6 @@
 #include <cassert>
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include <spdlog/spdlog.h>
 

@@ -1,6 +1,4 @@
 #include <string>
-#include <string_view>
-#include <utility>
 
 #include <nendo/driver/glove_options.hpp>
 

@@ -1,6 +1,5 @@
 #include "transport/open_transport.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <filesystem>

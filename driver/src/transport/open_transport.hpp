@@ -10,7 +10,6 @@
 #include <string>
 
 #include <nendo/base/result.hpp>
-#include <nendo/driver/devices.hpp>
 
 #include "transport/transport.hpp"
 

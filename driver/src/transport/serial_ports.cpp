@@ -6,7 +6,6 @@
 #include <system_error>
 #include <tuple>
 
-#include "transport/open_transport.hpp"
 #include "transport/sysfs.hpp"
 #include "transport/udev_devices.hpp"
 #include "transport/usb_identity.hpp"

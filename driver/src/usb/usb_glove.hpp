@@ -2,7 +2,6 @@
 // What the drivers of USB gloves share.
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include "units/forte_unit.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 

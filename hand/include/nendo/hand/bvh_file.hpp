@@ -8,7 +8,6 @@
 // overwritten. A crash of the program loses frames that were not flushed; a crash of the machine
 // also loses frames that the kernel had not written yet.
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
