@@ -111,14 +111,14 @@ AngleSources angle_sources(SensorMask present, SensorMask left_out) noexcept {
   // and all others with it, by the two gaps beside it. The little finger needs two gaps.
   const bool index_middle = present.has(Sensor::index_middle_abduction);
   const bool middle_ring = present.has(Sensor::middle_ring_abduction);
-  const bool ring_pinky = present.has(Sensor::ring_little_abduction);
+  const bool ring_little = present.has(Sensor::ring_little_abduction);
   const auto of_middle = index_middle || middle_ring ? AngleSource::from_gaps : zero;
   source(Angle::middle_mcp_abduction) = of_middle;
   take(Angle::index_mcp_abduction, Sensor::index_middle_abduction, of_middle);
   take(Angle::ring_mcp_abduction, Sensor::middle_ring_abduction, of_middle);
-  const auto of_little = ring_pinky ? AngleSource::from_gaps : of_middle;
+  const auto of_little = ring_little ? AngleSource::from_gaps : of_middle;
   source(Angle::little_mcp_abduction) =
-      middle_ring && ring_pinky ? AngleSource::measured : of_little;
+      middle_ring && ring_little ? AngleSource::measured : of_little;
 
   take(Angle::palm_arch, Sensor::palm_arch, zero);
   take(Angle::wrist_pitch, Sensor::wrist_pitch, zero);

@@ -43,7 +43,7 @@ constexpr std::array<TypicalSensor, sensor_slots> typical{{
     mcp,
     pip,
     dip,
-    pair,                   // pinky
+    pair,                   // little
     {80, 0.0100, 0, 25},    // palm_arch
     {128, 0.0125, -70, 80}, // wrist_pitch
     {128, 0.0125, -30, 20}, // wrist_yaw

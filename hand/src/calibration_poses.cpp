@@ -59,10 +59,10 @@ public:
     }
     return *this;
   }
-  constexpr Described& gaps(Asked index_middle, Asked middle_ring, Asked ring_pinky) {
+  constexpr Described& gaps(Asked index_middle, Asked middle_ring, Asked ring_little) {
     return of(Sensor::index_middle_abduction, index_middle)
         .of(Sensor::middle_ring_abduction, middle_ring)
-        .of(Sensor::ring_little_abduction, ring_pinky);
+        .of(Sensor::ring_little_abduction, ring_little);
   }
   constexpr Described& closed(Asked asked) { return gaps(asked, asked, asked); }
   constexpr Described& thumb(Asked roll, Asked abduction) {

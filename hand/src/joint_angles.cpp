@@ -57,7 +57,7 @@ FingerAngles finger_angles(const Measured& measured,
 void set_abductions(JointAngles& angles, const Measured& measured, double middle_bias) noexcept {
   const double index_middle = measured.raw_angle(Sensor::index_middle_abduction);
   const double middle_ring = measured.raw_angle(Sensor::middle_ring_abduction);
-  const double ring_pinky = measured.raw_angle(Sensor::ring_little_abduction);
+  const double ring_little = measured.raw_angle(Sensor::ring_little_abduction);
   const double off_centre = index_middle - middle_ring;
   // Zero stays zero, whatever the other is: a broken gap must not turn all fingers.
   const bool straight = middle_bias == 0.0 || off_centre == 0.0;
@@ -69,7 +69,7 @@ void set_abductions(JointAngles& angles, const Measured& measured, double middle
   angles[Angle::middle_mcp_abduction] = middle;
   set(Angle::index_mcp_abduction, middle + index_middle);
   set(Angle::ring_mcp_abduction, middle - middle_ring);
-  set(Angle::little_mcp_abduction, middle - middle_ring - ring_pinky);
+  set(Angle::little_mcp_abduction, middle - middle_ring - ring_little);
 }
 
 void set_thumb(JointAngles& angles, const Measured& measured) noexcept {

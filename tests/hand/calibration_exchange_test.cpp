@@ -145,15 +145,15 @@ TEST_SUITE("calibration exchange") {
     // Its frame turns towards the little finger by negative angles.
     const double index = (140 - rows[11].offset) * rows[7].gain;
     double ring = -rows[15].gain * (165 - rows[15].offset);
-    double pinky = -rows[19].gain * (170 - rows[19].offset);
+    double little = -rows[19].gain * (170 - rows[19].offset);
     const double middle = -(ring + index) * rows[11].gain;
     ring += middle;
-    pinky += ring;
+    little += ring;
     const auto angles = joint_angles(sample, read->calibration);
     CHECK(angles[Finger::index].mcp_abduction_rad == doctest::Approx(index + middle));
     CHECK(angles[Finger::middle].mcp_abduction_rad == doctest::Approx(middle));
     CHECK(angles[Finger::ring].mcp_abduction_rad == doctest::Approx(ring));
-    CHECK(angles[Finger::little].mcp_abduction_rad == doctest::Approx(pinky));
+    CHECK(angles[Finger::little].mcp_abduction_rad == doctest::Approx(little));
     CHECK(middle != 0.0);
   }
 

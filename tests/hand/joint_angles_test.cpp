@@ -184,10 +184,10 @@ TEST_SUITE("joint_angles") {
       CHECK(shows(a.wrist_pitch_rad, angle(Sensor::wrist_pitch), {-75, -70, 80, 85}));
       const double index_middle = angle(Sensor::index_middle_abduction);
       const double middle_ring = angle(Sensor::middle_ring_abduction);
-      const double ring_pinky = angle(Sensor::ring_little_abduction);
+      const double ring_little = angle(Sensor::ring_little_abduction);
       CHECK(shows(a[Finger::index].mcp_abduction_rad, index_middle, {-15, -10, 30, 40}));
       CHECK(a[Finger::middle].mcp_abduction_rad == 0.0);
-      CHECK(shows(a[Finger::little].mcp_abduction_rad, -middle_ring - ring_pinky,
+      CHECK(shows(a[Finger::little].mcp_abduction_rad, -middle_ring - ring_little,
                   {-70, -55, 20, 30}));
       const FingerAngles& ring = a[Finger::ring];
       CHECK(shows(ring.mcp_abduction_rad, -middle_ring, {-40, -30, 10, 15}));
