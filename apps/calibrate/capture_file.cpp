@@ -163,7 +163,7 @@ Result<void> write_readings(const std::filesystem::path& path,
   const auto add = [&](ordered_json line) {
     line["hand"] = name_of(side);
     line["counts_most"] = counts.max_count;
-    line["whole_range"] = counts.whole_range;
+    line["whole_range"] = counts.self_calibrated;
     text += line.dump() + "\n";
   };
   if (free_motion.present.bits != 0)

@@ -47,12 +47,12 @@ void print_readings(std::ostream& out, const hand::CalibrationFit& fit,
   }
 }
 
-void print_set_aside(std::ostream& out, const hand::CalibrationFit& fit,
-                     std::span<const hand::PoseReading> readings) {
-  for (const hand::SetAside& aside : fit.set_aside)
+void print_outliers(std::ostream& out, const hand::CalibrationFit& fit,
+                    std::span<const hand::PoseReading> readings) {
+  for (const hand::Outlier& outlier : fit.outliers)
     out << fmt::format("{}: {} contradicts the other poses and was not used\n",
-                       hand::pose_of(readings[aside.reading].pose).name,
-                       aside.sensor ? name_of(*aside.sensor) : "the touch");
+                       hand::pose_of(readings[outlier.reading].pose).name,
+                       outlier.sensor ? name_of(*outlier.sensor) : "the touch");
   if (fit.uses_quick_fit.bits == 0) return;
   out << "two poses predict the others better for:";
   for (const Sensor sensor : fit.uses_quick_fit)
@@ -128,7 +128,7 @@ void print_report(std::ostream& out, const hand::CalibrationFit& fit,
     out << fmt::format("{:22} is stuck: left out, and estimated from the sensors beside\n",
                        name_of(sensor));
   print_readings(out, fit, readings);
-  print_set_aside(out, fit, readings);
+  print_outliers(out, fit, readings);
   print_stiff(out, fit);
   print_hand(out, fit);
   // Where the poses leave a sensor's gain or offset to the default, a condition says nothing.

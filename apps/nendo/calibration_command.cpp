@@ -81,7 +81,7 @@ Result<void> list(const Options& options) {
   std::vector<std::vector<std::string>> rows{
       {"user", "hand", "glove", "made", "method", "in use", "path"}};
   for (const auto& file : stored.files) {
-    const bool in_force = is_in_force(file, stored.files);
+    const bool in_force = is_active_calibration(file, stored.files);
     if (options.json) {
       ordered_json line = summary_json(file);
       line["shared"] = file.shared;
@@ -141,7 +141,8 @@ Result<void> show(const Options& options) {
   }
   const WearerCalibration& wearer = file->wearer;
   ordered_json line = summary_json(*file);
-  line["counts"] = {{"most", wearer.counts.max_count}, {"whole_range", wearer.counts.whole_range}};
+  line["counts"] = {{"most", wearer.counts.max_count},
+                    {"whole_range", wearer.counts.self_calibrated}};
   line["hand_length_m"] = wearer.size.length_m;
   line["hand_breadth_m"] = wearer.size.breadth_m;
   if (!wearer.size.shape.is_average()) {

@@ -49,7 +49,7 @@ void print_json(const driver::GloveInfo& info, const std::vector<gloves::SensorA
       {"sensors", names_of(info.sensors)},
       {"angles", gloves::angle_sources_json(info.sensors)},
       {"rate_hz", info.rate_hz},
-      {"counts", {{"most", info.counts.max_count}, {"whole_range", info.counts.whole_range}}},
+      {"counts", {{"most", info.counts.max_count}, {"whole_range", info.counts.self_calibrated}}},
       {"abilities",
        {{"wrist_switch", can.wrist_switch},
         {"light", can.light},
@@ -148,9 +148,9 @@ void print_text(const driver::GloveInfo& info, const std::vector<gloves::SensorA
   columns.print("model", info.model);
   columns.print("hand", std::string(name_of(info.side)));
   columns.print("rate", info.rate_hz > 0.0 ? fmt::format("{:.6g} Hz", info.rate_hz) : "unknown");
-  columns.print("counts",
-                fmt::format("0 to {}, {}", info.counts.max_count,
-                            info.counts.whole_range ? "straight to fully bent" : "uncalibrated"));
+  columns.print("counts", fmt::format("0 to {}, {}", info.counts.max_count,
+                                      info.counts.self_calibrated ? "straight to fully bent"
+                                                                  : "uncalibrated"));
   columns.print("abilities", abilities_text(info.abilities));
   columns.print("sensors", std::to_string(sensors.size()));
   columns.print_list("", sensors);

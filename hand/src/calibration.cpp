@@ -7,15 +7,15 @@ namespace {
 struct TypicalSensor {
   double offset_counts; ///< counts of 255, in a CyberGlove
   double gain_rad;      ///< a count of 255, in a CyberGlove
-  double low_deg;       ///< where a whole range begins
-  double high_deg;      ///< where a whole range ends
+  double low_deg;       ///< where a self-calibrated scale begins
+  double high_deg;      ///< where it ends
 };
 
 // Gains of published CyberGlove calibrations lie between 0.010 and 0.016 rad a count, and the raw
 // ranges that users report run from about 60 to 200 of 255. A flat hand near the low end and 0.0125
 // rad a count cover the range of motion of each flexion joint inside those counts. Wrist sensors
 // are centred, because they turn both ways.
-// Whole ranges are the means of the American Academy of Orthopaedic Surgeons where it has one
+// The ranges are the means of the American Academy of Orthopaedic Surgeons where it has one
 // (finger MCP 90, PIP 100, DIP 80, thumb MCP 50 to 55 and IP 80, wrist 70 to 80 and 20 to 30), and
 // for the others what a spread or cupped hand shows.
 constexpr TypicalSensor mcp{60, 0.0125, 0, 90};
@@ -81,7 +81,7 @@ Calibration default_calibration(CountScale scale) noexcept {
   const double most = scale.max_count;
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     calibration.sensors[slot] =
-        scale.whole_range ? spread_over(typical[slot], most) : scaled(typical[slot], most);
+        scale.self_calibrated ? spread_over(typical[slot], most) : scaled(typical[slot], most);
   }
   return calibration;
 }

@@ -198,7 +198,7 @@ Result<std::string> calibration_text(const WearerCalibration& wearer) {
   text += "\n[glove]\nmodel = " + toml_string(wearer.glove_model) +
           "\nserial = " + toml_string(wearer.glove_serial) +
           "\ncounts_most = " + std::to_string(wearer.counts.max_count) +
-          "\nwhole_range = " + (wearer.counts.whole_range ? "true" : "false") + "\n";
+          "\nwhole_range = " + (wearer.counts.self_calibrated ? "true" : "false") + "\n";
   text += "\n[hand_size]\nlength_m = " + decimal_text(wearer.size.length_m) +
           "\nbreadth_m = " + decimal_text(wearer.size.breadth_m) + "\n" +
           shape_lines(wearer.size.shape) + "\n[sensors]\n";
@@ -275,7 +275,7 @@ CountRanges reached_ends(const WearerCalibration& wearer) noexcept {
 
 Calibration calibration_for(const WearerCalibration& wearer, CountScale glove) noexcept {
   Calibration calibration = default_calibration(glove);
-  const bool comparable = wearer.counts.whole_range == glove.whole_range &&
+  const bool comparable = wearer.counts.self_calibrated == glove.self_calibrated &&
                           wearer.counts.max_count > 0 && glove.max_count > 0;
   if (!comparable) return calibration;
   const double scale = static_cast<double>(glove.max_count) / wearer.counts.max_count;

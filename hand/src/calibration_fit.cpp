@@ -22,7 +22,7 @@ constexpr double contradiction_rad = from_degrees(30);
 constexpr double min_gain_ratio = 0.2;
 // Touches that leave pads so far apart were other touches.
 constexpr double contradiction_m = 0.02;
-constexpr int max_set_aside = 16;
+constexpr int max_outliers = 16;
 // A sensor that turns by less than this part of the default's counts for the angles that were asked
 // does not work.
 constexpr double min_counts_ratio = 0.15;
@@ -49,7 +49,7 @@ Result<void> check_reading(const PoseReading& reading, SensorMask sensors, Count
       return about(where + "not a count from 0 to " + std::to_string(scale.max_count) +
                    "; hold the pose again");
     const bool at_end = counts <= 1.0 || counts >= scale.max_count;
-    if (at_end && !scale.whole_range)
+    if (at_end && !scale.self_calibrated)
       return about(where + "at the end of its counts; set the glove's gain and hold it again");
   }
   return {};
@@ -218,15 +218,15 @@ std::optional<std::pair<std::size_t, std::size_t>> worst_assumption(const FitPro
 /// Solves, and sets evidence aside until the rest agrees.
 Solution solve_without_contradictions(FitProblem& problem, std::size_t readings,
                                       const FreeUnknowns& free, const Calibration& start,
-                                      std::vector<SetAside>& set_aside) {
+                                      std::vector<Outlier>& outliers) {
   for (;;) {
     Solution solution = solve(problem, free, Unknowns::Zero());
-    if (static_cast<int>(set_aside.size()) >= max_set_aside) return solution;
+    if (static_cast<int>(outliers.size()) >= max_outliers) return solution;
     bool changed = false;
     if (const auto worst = worst_assumption(problem, readings, solution, start)) {
       const auto [reading, number] = *worst;
       const std::size_t slot = problem.assumptions(reading)[number].slot;
-      set_aside.push_back({reading, static_cast<Sensor>(slot)});
+      outliers.push_back({reading, static_cast<Sensor>(slot)});
       problem.set_aside(reading, number);
       changed = true;
     }
@@ -239,7 +239,7 @@ Solution solve_without_contradictions(FitProblem& problem, std::size_t readings,
       widest_m = gap_m;
     }
     if (widest < readings) {
-      set_aside.push_back({widest, std::nullopt});
+      outliers.push_back({widest, std::nullopt});
       problem.set_aside_touch(widest);
       changed = true;
     }
@@ -438,7 +438,7 @@ Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Si
   const Calibration start = options.start.value_or(default_calibration(options.scale));
   CalibrationFit fit;
   const Solution solution =
-      solve_without_contradictions(problem, readings.size(), free, start, fit.set_aside);
+      solve_without_contradictions(problem, readings.size(), free, start, fit.outliers);
   fit.calibration = problem.calibration(solution.at);
   fit.size = problem.size(solution.at);
   fit.condition = condition_of(solution.covariance);

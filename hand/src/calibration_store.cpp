@@ -82,7 +82,7 @@ void list_folder(const fs::path& folder, bool shared, CalibrationList& list) {
 
 std::optional<GloveMatch> match_of(const WearerCalibration& wearer, const GloveIdentity& glove) {
   if (wearer.side != glove.side) return std::nullopt;
-  if (wearer.counts.whole_range != glove.counts.whole_range) return std::nullopt;
+  if (wearer.counts.self_calibrated != glove.counts.self_calibrated) return std::nullopt;
   if (!glove.user.empty() && wearer.user != glove.user) return std::nullopt;
   const bool same_model = wearer.glove_model == glove.model;
   if (!same_model && !wearer.glove_model.empty()) return std::nullopt;
@@ -142,7 +142,8 @@ std::optional<CalibrationChoice> choose_calibration(const std::vector<StoredCali
   return best;
 }
 
-bool is_in_force(const StoredCalibration& file, const std::vector<StoredCalibration>& files) {
+bool is_active_calibration(const StoredCalibration& file,
+                           const std::vector<StoredCalibration>& files) {
   const auto& wearer = file.wearer;
   const auto choice = choose_calibration(
       files, {wearer.user, wearer.glove_model, wearer.glove_serial, wearer.side, wearer.counts});

@@ -146,7 +146,7 @@ void read_glove(TomlReader& reader, const toml::table& root, WearerCalibration& 
   complain_if(reader, *glove, "glove serial", complaint_about_text(wearer.glove_serial, true));
   wearer.counts.max_count =
       static_cast<std::uint16_t>(reader.count(*glove, "counts_most", 65535, 1));
-  wearer.counts.whole_range = reader.truth(*glove, "whole_range");
+  wearer.counts.self_calibrated = reader.truth(*glove, "whole_range");
 }
 
 /// Without hand_shape the hand is an average one.

@@ -53,7 +53,7 @@ void PoseCapture::add(const GloveSample& sample) noexcept {
     watched.squares += off * (counts - watched.mean_counts);
     // 8-bit gloves never send 0. Gloves that know their whole range may well be at its end.
     const bool end = counts <= 1.0 || counts >= scale_.max_count;
-    if (end && !scale_.whole_range) ++watched.at_end;
+    if (end && !scale_.self_calibrated) ++watched.at_end;
   }
 }
 

@@ -175,7 +175,7 @@ template <class JointText>
 Result<ExportedCalibration> written(const Calibration& calibration, CountScale counts,
                                     std::string text, const JointText& joint_text,
                                     std::string_view end) {
-  if (counts.whole_range || counts.max_count == 0)
+  if (counts.self_calibrated || counts.max_count == 0)
     return Error{Errc::bad_input,
                  "the ROS forms are for a CyberGlove's bare counts, and this glove "
                  "calibrates itself; export as toml or csv"};

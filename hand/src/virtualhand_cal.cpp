@@ -190,7 +190,7 @@ Result<ImportedCalibration> parse_virtualhand(std::string_view text, std::string
 }
 
 Result<ExportedCalibration> virtualhand_text(const Calibration& calibration, CountScale counts) {
-  if (counts.whole_range || counts.max_count == 0)
+  if (counts.self_calibrated || counts.max_count == 0)
     return Error{Errc::bad_input, "a .cal file is for a CyberGlove's bare counts, and this glove "
                                   "calibrates itself; export as toml or csv"};
   const double scale = 255.0 / counts.max_count;

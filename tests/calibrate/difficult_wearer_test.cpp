@@ -210,7 +210,7 @@ TEST_SUITE("difficult_wearer") {
       CHECK(errors.fingers.p95 < 12.0);
       CHECK(errors.thumb.median < 5.0);
       CHECK(errors.thumb.p95 < 15.0);
-      CHECK(fit->set_aside.size() <= 2);
+      CHECK(fit->outliers.size() <= 2);
       CHECK(fit->limited_range == std::array<bool, hand::finger_count>{});
     }
   }

@@ -144,7 +144,7 @@ TEST_SUITE("calibration store") {
     other.serial = "A1"; // two makers may give the same number
     CHECK(store.chosen(other) == "none");
     GloveIdentity self_calibrating = glove("anna", "A1", Side::left);
-    self_calibrating.counts.whole_range = true;
+    self_calibrating.counts.self_calibrated = true;
     CHECK(store.chosen(self_calibrating) == "none");
   }
 
@@ -162,7 +162,7 @@ TEST_SUITE("calibration store") {
     REQUIRE(list.files.size() == 4);
     for (const auto& file : list.files) {
       const std::string stem = file.path.stem().string();
-      CHECK(is_in_force(file, list.files) == (stem == "newer" || stem == "shared2"));
+      CHECK(is_active_calibration(file, list.files) == (stem == "newer" || stem == "shared2"));
     }
   }
 

@@ -117,8 +117,8 @@ TEST_SUITE("calibration") {
   }
 
   TEST_CASE("a scale without counts has no angle") {
-    for (const bool whole_range : {false, true}) {
-      for (const auto& sensor : default_calibration({0, whole_range}).sensors)
+    for (const bool self_calibrated : {false, true}) {
+      for (const auto& sensor : default_calibration({0, self_calibrated}).sensors)
         CHECK(sensor.angle_rad(RawCount{65535}) == 0.0);
     }
   }

@@ -61,7 +61,7 @@ constexpr SensorMask pip_curls = mask_of({Sensor::thumb_ip, Sensor::index_pip, S
 constexpr SensorMask two_a_finger{curls.bits | pip_curls.bits};
 constexpr SensorMask spread_alone = mask_of({Sensor::thumb_mcp, Sensor::thumb_abduction});
 
-constexpr CountScale whole_range{1000, true};
+constexpr CountScale self_calibrated{1000, true};
 
 GloveSample closed(SensorMask mask, std::uint16_t count) {
   GloveSample sample;
@@ -201,7 +201,7 @@ TEST_SUITE("joint_angles") {
   }
 
   TEST_CASE("with fewer sensors every angle follows without a jump and never backwards") {
-    const Calibration calibration = default_calibration(whole_range);
+    const Calibration calibration = default_calibration(self_calibrated);
     for (const SensorMask mask : {curls, pip_curls, two_a_finger, spread_alone}) {
       std::vector<double> before = flexions(joint_angles(closed(mask, 0), calibration));
       for (std::uint16_t count = 1; count <= whole_range.max_count; ++count) {
@@ -218,7 +218,7 @@ TEST_SUITE("joint_angles") {
   }
 
   TEST_CASE("a bent finger's PIP follows the MCP 1.1 times, its DIP the PIP, and the MCP the PIP") {
-    const Calibration calibration = default_calibration(whole_range);
+    const Calibration calibration = default_calibration(self_calibrated);
     const double half_mcp = 0.5 * 1.5707963267948966;
     const FingerAngles curl = joint_angles(closed(curls, 500), calibration)[Finger::middle];
     CHECK(curl.mcp_flexion_rad == doctest::Approx(half_mcp));
@@ -237,7 +237,7 @@ TEST_SUITE("joint_angles") {
   }
 
   TEST_CASE("a glove of five curls makes a flat hand, a fist, and a pinch") {
-    const Calibration calibration = default_calibration(whole_range);
+    const Calibration calibration = default_calibration(self_calibrated);
     const HandSkeleton skeleton(Side::right);
     const auto fingertips = [&](std::uint16_t count) {
       return skeleton
@@ -262,7 +262,7 @@ TEST_SUITE("joint_angles") {
   TEST_CASE("a thumb without a flexion sensor lies flat") {
     GloveSample sample = closed(curls, 1000);
     sample.present.bits &= ~mask_of({Sensor::thumb_mcp}).bits;
-    const JointAngles angles = joint_angles(sample, default_calibration(whole_range));
+    const JointAngles angles = joint_angles(sample, default_calibration(self_calibrated));
     CHECK(angles.thumb_roll_rad == 0.0);
     CHECK(angles.thumb_abduction_rad == 0.0);
     CHECK(angles.thumb_mcp_flexion_rad == 0.0);

@@ -80,9 +80,9 @@ TEST_SUITE("range_adaptation") {
       CHECK(same_lines(adaptation.calibration(), default_calibration(counts)));
       const SensorRange range = adaptation.ranges()[pip];
       const double scale = counts.max_count / 255.0;
-      CHECK(range.low_counts == doctest::Approx(counts.whole_range ? 0.0 : 60.0 * scale));
+      CHECK(range.low_counts == doctest::Approx(counts.self_calibrated ? 0.0 : 60.0 * scale));
       CHECK(range.high_counts ==
-            doctest::Approx(counts.whole_range ? 4095.0 : (60.0 + usual_span) * scale));
+            doctest::Approx(counts.self_calibrated ? 4095.0 : (60.0 + usual_span) * scale));
       CHECK(range.turns == 0);
     }
   }

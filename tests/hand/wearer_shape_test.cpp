@@ -161,9 +161,9 @@ TEST_SUITE("wearer_shape") {
     const auto fit = fit_calibration(readings, Side::right, sensors_22);
     REQUIRE(fit);
     const bool named =
-        std::any_of(fit->set_aside.begin(), fit->set_aside.end(), [&](const SetAside& aside) {
-          return aside.sensor == Sensor::thumb_roll &&
-                 readings[aside.reading].pose == PoseId::thumb_up;
+        std::any_of(fit->outliers.begin(), fit->outliers.end(), [&](const Outlier& outlier) {
+          return outlier.sensor == Sensor::thumb_roll &&
+                 readings[outlier.reading].pose == PoseId::thumb_up;
         });
     CHECK(named);
     // All other sensors are as they would be without that pose's roll.

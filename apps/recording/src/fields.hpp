@@ -96,7 +96,7 @@ public:
   void counts(const std::optional<CountScale>& value) {
     flag(value.has_value());
     writer_->u16_le(value ? value->max_count : 0);
-    flag(value && value->whole_range);
+    flag(value && value->self_calibrated);
   }
   /// Writes the kind, and the bit `more` if it is set. Returns whether it is; a reader returns
   /// whether it reads the bit.

@@ -60,7 +60,7 @@ void glove_fields(auto& fields, auto& glove) {
   fields.bits(info.sensors.bits, sensor_slots);
   fields.number(info.rate_hz, 0.0, max_rate_hz);
   fields.u16(info.counts.max_count);
-  fields.flag(info.counts.whole_range);
+  fields.flag(info.counts.self_calibrated);
   auto& has = info.abilities;
   const std::array flags{&has.wrist_switch, &has.light, &has.vibration, &has.resistance};
   unsigned bits = 0;

@@ -92,7 +92,7 @@ Result<hand::StoredCalibration> asked_for(const driver::GloveInfo& glove, Side s
   if (file->wearer.side != side)
     return refused("is of a " + std::string(name_of(file->wearer.side)) + " hand, but " +
                    printable(glove.source) + " is a " + std::string(name_of(side)) + "-hand glove");
-  if (file->wearer.counts.whole_range != glove.counts.whole_range)
+  if (file->wearer.counts.self_calibrated != glove.counts.self_calibrated)
     return refused("is of another kind of glove than " + printable(glove.source));
   report_choice(glove, *file, "", note);
   return file;
@@ -284,7 +284,7 @@ Result<StoredCalibration> named_calibration(const std::string& name, const Note&
   std::vector<const StoredCalibration*> meant;
   for (const auto& file : list.files) {
     if (stem_of(file) == name) return file; // the user's own comes first
-    if (file.wearer.user == name && is_in_force(file, list.files)) meant.push_back(&file);
+    if (file.wearer.user == name && is_active_calibration(file, list.files)) meant.push_back(&file);
   }
   if (meant.size() == 1) return *meant.front();
   if (meant.empty()) {

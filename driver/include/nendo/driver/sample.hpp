@@ -133,7 +133,7 @@ struct CountScale {
   std::uint16_t max_count = 255;
   /// True: 0 is a straight (closed) joint and `max_count` a fully bent (spread) one, as
   /// self-calibrating gloves report. False: counts of a CyberGlove's A/D converter.
-  bool whole_range = false;
+  bool self_calibrated = false;
   friend constexpr bool operator==(CountScale, CountScale) = default;
 };
 

@@ -74,7 +74,7 @@ NENDO_API Result<std::filesystem::path> retire_calibration(const std::filesystem
 NENDO_API bool is_earlier_version(const std::filesystem::path& path);
 
 /// Returns the calibration, converted to a glove of this scale. Uncalibrated sensors get the
-/// default's line; so do all sensors if only one of the two scales is a whole range.
+/// default's line; so do all sensors if only one of the two scales is self-calibrated.
 NENDO_API Calibration calibration_for(const WearerCalibration& wearer, CountScale glove) noexcept;
 
 /// Returns a time in UTC, in the format of RFC 3339: "2026-11-21T19:27:05Z".

@@ -85,7 +85,7 @@ struct ReadingFit {
 };
 
 /// An outlier: rejected evidence that contradicts the rest.
-struct SetAside {
+struct Outlier {
   std::size_t reading = 0;      ///< index in `readings`
   std::optional<Sensor> sensor; ///< the sensor of the assumed angle; nullopt: the touch
 };
@@ -95,7 +95,7 @@ struct CalibrationFit {
   HandSize size; ///< this wearer's hand
   /// Root mean square distance between the pads that touched, under the fit; 0 without touches.
   double touch_residual_m = 0.0;
-  std::vector<SetAside> set_aside;
+  std::vector<Outlier> outliers;
   /// Sensors with lines of the quick fit, which predict the held-out poses better than the full
   /// fit. Chosen per group of similar joints.
   SensorMask uses_quick_fit;
@@ -114,7 +114,7 @@ struct CalibrationFit {
 /// stays at its default, because no pose determines it. Takes some hundred milliseconds and
 /// allocates. Fails with bad_input on: a reading that is not finite, out of scale, saturated or
 /// lacks a sensor; flat or fist missing; an MCP or PIP sensor of a finger that moves the wrong way
-/// or not at all. Other contradictions are no errors; see CalibrationFit::set_aside.
+/// or not at all. Other contradictions are no errors; see CalibrationFit::outliers.
 NENDO_API Result<CalibrationFit> fit_calibration(std::span<const PoseReading> readings, Side side,
                                                  SensorMask sensors,
                                                  const FitOptions& options = {});

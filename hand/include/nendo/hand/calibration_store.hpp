@@ -70,13 +70,13 @@ struct CalibrationChoice {
 };
 
 /// Returns the best calibration for `glove`, or nullopt. It is never one of another user, side,
-/// model or CountScale::whole_range. Among equal matches, own files precede shared ones, then newer
-/// files older ones, then the first in `files` is chosen. `files` must outlive the choice.
+/// model or CountScale::self_calibrated. Among equal matches, own files precede shared ones, then
+/// newer files older ones, then the first in `files` is chosen. `files` must outlive the choice.
 NENDO_API std::optional<CalibrationChoice>
 choose_calibration(const std::vector<StoredCalibration>& files, const GloveIdentity& glove);
 
 /// Returns whether choose_calibration() chooses this file for its own user, glove and side.
-NENDO_API bool is_in_force(const StoredCalibration& file,
-                           const std::vector<StoredCalibration>& files);
+NENDO_API bool is_active_calibration(const StoredCalibration& file,
+                                     const std::vector<StoredCalibration>& files);
 
 } // namespace nendo::hand

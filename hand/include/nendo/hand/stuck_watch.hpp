@@ -64,7 +64,7 @@ private:
 /// Returns whether a count is at an end of an A/D converter's range, as usual for a broken sensor.
 /// False for self-calibrating gloves, which are at an end whenever a joint is.
 constexpr bool is_at_end(std::uint16_t count, CountScale scale) noexcept {
-  return !scale.whole_range && (count <= 1 || count + 1 >= scale.max_count);
+  return !scale.self_calibrated && (count <= 1 || count + 1 >= scale.max_count);
 }
 
 /// Returns whether counts from `low` to `high` are only flicker: of a twelve-bit converter's last
@@ -77,7 +77,7 @@ constexpr bool is_still(std::uint16_t low, std::uint16_t high, CountScale scale)
 /// Returns whether counts reach an end of a self-calibrating glove's scale, to which it clamps
 /// straight or fully bent joints: a constant count there means nothing.
 constexpr bool rests_at_end(double low, double high, CountScale scale) noexcept {
-  return scale.whole_range && (low <= 0.0 || high >= scale.max_count);
+  return scale.self_calibrated && (low <= 0.0 || high >= scale.max_count);
 }
 
 } // namespace nendo::hand
