@@ -17,8 +17,8 @@
 
 namespace nendo::calibrate {
 
-// Finds stuck sensors while a wearer is guided. The guide knows more than hand::StuckWatch: it has
-// asked for a motion of every joint, and for poses that bend a joint by different angles.
+/// Finds stuck sensors while a wearer is guided. The guide knows more than hand::StuckWatch: it has
+/// asked for a motion of every joint, and for poses that bend a joint by different angles.
 class StillSensors {
 public:
   explicit StillSensors(CountScale scale) : scale_(scale), watch_(scale) {}

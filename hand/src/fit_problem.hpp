@@ -1,5 +1,5 @@
 #pragma once
-// The least-squares problem of a calibration: unknowns, residuals and their derivatives.
+// The least-squares problem of a calibration: unknowns, residuals, their derivatives, and solution.
 
 #include <array>
 #include <span>
@@ -84,8 +84,8 @@ public:
   /// Returns the distance between the pads that should touch in this reading; 0 without a touch.
   double gap_m(const Unknowns& at, std::size_t reading) const;
 
-  /// Returns the angles of one reading, and unless `jacobian` is null their derivatives.
   using AngleJacobian = Eigen::Matrix<double, sensor_slots, line_unknowns, Eigen::RowMajor>;
+  /// Returns the angles of one reading, and unless `jacobian` is null their derivatives.
   SensorAngles angles_rad(const Unknowns& at, std::size_t reading, AngleJacobian* jacobian) const;
 
 private:
@@ -154,7 +154,6 @@ private:
   Eigen::Index height_ = 0;
 };
 
-// Solves the least-squares problem of a calibration.
 /// Indices of unknowns that are not fixed; those of the calibration come first.
 using FreeUnknowns = std::vector<Eigen::Index>;
 

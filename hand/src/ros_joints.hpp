@@ -38,13 +38,13 @@ inline constexpr std::array<std::string_view, sensor_slots> ros_names{
 inline constexpr double ros_first_count = 1.0;
 inline constexpr double ros_counts = 254.0;
 
-/// Returns the line that has the least greatest deviation from the points, and that deviation.
 struct BestLine {
   double slope = 0.0;
   double at_zero = 0.0;   ///< its value at 0
   double deviation = 0.0; ///< the greatest, as it is at `deviation_at`
   double deviation_at = 0.0;
 };
+/// Returns the line that has the least greatest deviation from the points, and that deviation.
 /// `points` are sorted by `raw`, with two different ones at least.
 BestLine best_line(const std::vector<RosPoint>& points);
 

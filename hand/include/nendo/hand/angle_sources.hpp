@@ -46,11 +46,10 @@ using AngleSources = std::array<AngleSource, angle_count>;
 /// depends only on the arguments. Wait-free.
 NENDO_API AngleSources angle_sources(SensorMask present, SensorMask left_out = {}) noexcept;
 
-// The expected errors of a calibrated glove's angles, so that users of a pose know its accuracy.
-// Measured angles are off by a few degrees, consistently. Estimated angles can be far off: an
-// estimate of a DIP angle uses the PIP angle, and cannot detect a hook.
-/// One standard deviation of each angle, by index_of(Angle), in radians; 0 for AngleSource::zero,
-/// whose error is unknown.
+/// The expected errors of a calibrated glove's angles: one standard deviation of each, by
+/// index_of(Angle), in radians; 0 for AngleSource::zero, whose error is unknown. Measured angles
+/// are off by a few degrees, consistently. Estimated angles can be far off: an estimate of a DIP
+/// angle uses the PIP angle, and cannot detect a hook.
 using AngleDeviations = std::array<double, angle_count>;
 
 /// Returns the expected errors of `angles`, made by joint_angles() for a calibrated glove with

@@ -18,22 +18,22 @@
 
 namespace nendo::hand {
 
-// Formats a hand's motion as text in the Biovision hierarchy format (BVH), which animation programs
-// read. BvhFile writes the text to disk.
-//
-// - Lengths are in centimetres, as most readers expect, and angles in degrees. The axes are
-//   OpenXR's.
-// - The ROOT is the wrist. Every other joint is a JOINT, in OpenXR's order, and every tip an End
-//   Site. The palm is omitted, because it is fixed to the wrist.
-// - Names are OpenXR's followed by the hand, as the OpenXR specification advises: wrist_R,
-//   index_proximal_L.
-// - With all rotations zero, the hand is the flat hand of JointAngles{}, whose bones are the
-//   OFFSETs. A joint's OpenXR orientation is therefore its BVH orientation times its orientation in
-//   the flat hand.
-// - Channels are "Yrotation Zrotation Xrotation", that is R = Ry Rz Rx. A finger spreads about Y
-//   and bends about X, so its channels are its joint's angles. This order is singular at Z = 90
-//   degrees, which no finger reaches. With X in the middle, it would be singular at a bend of 90
-//   degrees.
+/// Formats a hand's motion as text in the Biovision hierarchy format (BVH), which animation
+/// programs read. BvhFile writes the text to disk.
+///
+/// - Lengths are in centimetres, as most readers expect, and angles in degrees. The axes are
+///   OpenXR's.
+/// - The ROOT is the wrist. Every other joint is a JOINT, in OpenXR's order, and every tip an End
+///   Site. The palm is omitted, because it is fixed to the wrist.
+/// - Names are OpenXR's followed by the hand, as the OpenXR specification advises: wrist_R,
+///   index_proximal_L.
+/// - With all rotations zero, the hand is the flat hand of JointAngles{}, whose bones are the
+///   OFFSETs. A joint's OpenXR orientation is therefore its BVH orientation times its orientation
+///   in the flat hand.
+/// - Channels are "Yrotation Zrotation Xrotation", that is R = Ry Rz Rx. A finger spreads about Y
+///   and bends about X, so its channels are its joint's angles. This order is singular at Z = 90
+///   degrees, which no finger reaches. With X in the middle, it would be singular at a bend of 90
+///   degrees.
 class NENDO_API BvhFormat {
 public:
   static constexpr double units_per_metre = 100.0;

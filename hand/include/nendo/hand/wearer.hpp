@@ -43,9 +43,9 @@ struct Wearer {
   WearerHand& of(Side side) noexcept { return side == Side::left ? left : right; }
 };
 
-// Chooses the calibration for each of a glove's samples: that of the wearer's left or right hand,
-// by the side of the sample, or one that adaptation learns from the hand's movements: the whole
-// calibration, or only its slips.
+/// Chooses the calibration for each of a glove's samples: that of the wearer's left or right hand,
+/// by the side of the sample, or one that adaptation learns from the hand's movements: the whole
+/// calibration, or only its slips.
 class ActiveCalibration {
 public:
   explicit ActiveCalibration(const Wearer& wearer) noexcept
