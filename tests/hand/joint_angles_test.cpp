@@ -204,7 +204,7 @@ TEST_SUITE("joint_angles") {
     const Calibration calibration = default_calibration(self_calibrated);
     for (const SensorMask mask : {curls, pip_curls, two_a_finger, spread_alone}) {
       std::vector<double> before = flexions(joint_angles(closed(mask, 0), calibration));
-      for (std::uint16_t count = 1; count <= whole_range.max_count; ++count) {
+      for (std::uint16_t count = 1; count <= self_calibrated.max_count; ++count) {
         const auto now = flexions(joint_angles(closed(mask, count), calibration));
         for (std::size_t n = 0; n < now.size(); ++n) {
           REQUIRE(now[n] >= before[n]);
