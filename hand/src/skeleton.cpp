@@ -1,9 +1,6 @@
 #include <nendo/hand/skeleton.hpp>
 
 #include <cmath>
-#include <cstdio>
-#include <string>
-#include <string_view>
 
 #include <nendo/hand/joints.hpp>
 
@@ -156,15 +153,6 @@ HandSkeleton::Axes axes_of(const WearerShape& shape) {
   return axes;
 }
 
-Result<void> check_bone(std::string_view finger, std::string_view bone, double length_m) {
-  // Written so that a NaN is refused.
-  if (length_m >= BoneLengths::min_m && length_m <= BoneLengths::max_m) return {};
-  char length[32];
-  std::snprintf(length, sizeof length, "%g", length_m);
-  return Error{Errc::bad_input, std::string(finger) + " " + std::string(bone) + " bone: " + length +
-                                    " m is not the length of a bone: give metres, 0.001 to 0.2"};
-}
-
 } // namespace
 
 Eigen::Matrix<double, 3, 5> HandPose::fingertip_positions() const noexcept {
@@ -214,12 +202,9 @@ HandSkeleton::Offsets HandSkeleton::offsets_of(const HandSize& size) {
 }
 
 HandSkeleton::HandSkeleton(Side side, const HandSize& size)
-    : HandSkeleton(side, offsets_of(size), size.shape) {}
-
-HandSkeleton::HandSkeleton(Side side, const Offsets& offsets_m, const WearerShape& shape)
-    : side_(side), offsets_m_(offsets_m), axes_(axes_of(shape)),
-      pad_m_(0.0, -pad_depth_m - shape[ShapeTerm::pad_depth],
-             pad_behind_tip_m + shape[ShapeTerm::pad_behind]) {
+    : side_(side), offsets_m_(offsets_of(size)), axes_(axes_of(size.shape)),
+      pad_m_(0.0, -pad_depth_m - size.shape[ShapeTerm::pad_depth],
+             pad_behind_tip_m + size.shape[ShapeTerm::pad_behind]) {
   offsets_m_[index_of(Joint::palm)] =
       rest_offset(Joint::middle_metacarpal) + 0.5 * rest_offset(Joint::middle_proximal);
   // A left hand is the mirror image of a right one: with M = diag(-1, 1, 1), places become M p and
@@ -236,43 +221,6 @@ HandSkeleton::HandSkeleton(Side side, const Offsets& offsets_m, const WearerShap
         mirror.asDiagonal() * pointing(head) * mirror.asDiagonal(),
         {mirror.x() * std::sin(axes_.knuckle_tilts_rad[f]), std::cos(axes_.knuckle_tilts_rad[f])}};
   }
-}
-
-Result<HandSkeleton> HandSkeleton::of_bones(Side side, const BoneLengths& bones) {
-  if (auto checked = bones.check(); !checked) return checked.error();
-  const HandSize average;
-  const BoneLengths usual = HandSkeleton(side, average).bones();
-  const auto middle = [](const BoneLengths& of) {
-    double sum_m = 0.0;
-    for (const double bone_m : of.fingers_m[1])
-      sum_m += bone_m;
-    return sum_m;
-  };
-  const double scale = middle(bones) / middle(usual);
-  Offsets offsets_m = offsets_of({scale * average.length_m, scale * average.breadth_m});
-  const auto stretch = [&](Joint joint, double length_m) {
-    Vector3d& offset = offsets_m[index_of(joint)];
-    offset *= length_m / offset.norm();
-  };
-  for (std::size_t bone = 0; bone < 3; ++bone)
-    stretch(joint_after(Joint::thumb_proximal, bone), bones.thumb_m[bone]);
-  for (std::size_t f = 0; f < 4; ++f) {
-    for (std::size_t bone = 0; bone < 4; ++bone)
-      stretch(joint_after(fingers[f].metacarpal, bone + 1), bones.fingers_m[f][bone]);
-  }
-  return HandSkeleton(side, offsets_m, {});
-}
-
-BoneLengths HandSkeleton::bones() const noexcept {
-  BoneLengths bones;
-  for (std::size_t bone = 0; bone < 3; ++bone)
-    bones.thumb_m[bone] = rest_offset(joint_after(Joint::thumb_proximal, bone)).norm();
-  for (std::size_t f = 0; f < 4; ++f) {
-    for (std::size_t bone = 0; bone < 4; ++bone) {
-      bones.fingers_m[f][bone] = rest_offset(joint_after(fingers[f].metacarpal, bone + 1)).norm();
-    }
-  }
-  return bones;
 }
 
 /// From the wrist outwards, one chain of bones after the other.
@@ -347,24 +295,6 @@ HandPose HandSkeleton::pose(const JointAngles& angles,
   for (std::size_t f = 0; f < fingers_.size(); ++f)
     walk.finger(f, wrist);
   return pose;
-}
-
-Result<void> BoneLengths::check() const {
-  static constexpr std::array<std::string_view, 4> bone_names{"metacarpal", "proximal",
-                                                              "intermediate", "distal"};
-  static constexpr std::array<std::string_view, 3> thumb_names{"metacarpal", "proximal", "distal"};
-  for (std::size_t bone = 0; bone < thumb_m.size(); ++bone) {
-    if (auto checked = check_bone("thumb", thumb_names[bone], thumb_m[bone]); !checked)
-      return checked;
-  }
-  for (std::size_t finger = 0; finger < fingers_m.size(); ++finger) {
-    for (std::size_t bone = 0; bone < bone_names.size(); ++bone) {
-      const auto name = name_of(static_cast<Finger>(finger + 1)); // the thumb has its own
-      auto checked = check_bone(name, bone_names[bone], fingers_m[finger][bone]);
-      if (!checked) return checked;
-    }
-  }
-  return {};
 }
 
 } // namespace nendo::hand

@@ -49,11 +49,10 @@ TEST_SUITE("inverse_kinematics") {
       finger.mcp_flexion_rad = finger.pip_flexion_rad = finger.dip_flexion_rad = 0.1;
     for (auto& finger : narrow.high.fingers)
       finger.mcp_flexion_rad = finger.pip_flexion_rad = finger.dip_flexion_rad = 0.9;
-    BoneLengths bones = HandSkeleton(Side::right).bones();
-    bones.fingers_m[0][1] = 0.060;
-    bones.thumb_m[1] = 0.025;
-    const auto skeleton = HandSkeleton::of_bones(Side::right, bones);
-    REQUIRE(skeleton);
+    HandSize size;
+    size.shape[ShapeTerm::index_proximal] = 0.3;
+    size.shape[ShapeTerm::thumb_proximal] = -0.4;
+    const HandSkeleton skeleton(Side::right, size);
     InverseOptions options;
     options.limits = narrow;
     for (int round = 0; round < 500; ++round) {
@@ -62,10 +61,10 @@ TEST_SUITE("inverse_kinematics") {
       for (auto& f : inside.fingers)
         f = {bend(random), f.mcp_abduction_rad, bend(random), bend(random)};
       const Isometry3d base = random_place(random);
-      const auto targets = targets_at(skeleton->pose(inside, base).fingertip_positions());
+      const auto targets = targets_at(skeleton.pose(inside, base).fingertip_positions());
       const auto solution =
-          inverse_kinematics(*skeleton, base, targets, resting_with_wrist_of(inside), options);
-      REQUIRE(most(distances(*skeleton, base, targets, solution.angles)) < tenth_mm);
+          inverse_kinematics(skeleton, base, targets, resting_with_wrist_of(inside), options);
+      REQUIRE(most(distances(skeleton, base, targets, solution.angles)) < tenth_mm);
       REQUIRE(within(narrow, solution.angles));
     }
   }

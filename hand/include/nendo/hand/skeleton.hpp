@@ -11,27 +11,12 @@
 
 #include <Eigen/Geometry>
 
-#include <nendo/base/result.hpp>
+#include <nendo/base/side.hpp>
 #include <nendo/hand/joint_angles.hpp>
 #include <nendo/hand/joints.hpp>
 #include <nendo/hand/wearer_shape.hpp>
 
 namespace nendo::hand {
-
-// The bones of one wearer's hand, measured by a ruler or a scan.
-/// Lengths in metres. A bone runs from joint to joint, a distal bone from its joint to the tip of
-/// the finger.
-struct NENDO_API BoneLengths {
-  static constexpr double min_m = 0.001;
-  static constexpr double max_m = 0.200;
-
-  std::array<double, 3> thumb_m{}; ///< metacarpal, proximal, distal
-  /// Index, middle, ring, little: metacarpal, proximal, intermediate, distal.
-  std::array<std::array<double, 4>, 4> fingers_m{};
-
-  /// Fails with bad_input, naming the bone, if a length is not a number from min_m to max_m.
-  Result<void> check() const;
-};
 
 /// The two external measures from which all bones are scaled, and the deviations from an average
 /// hand of these measures. The defaults lie between the means of women and men in the ANSUR II
@@ -65,11 +50,6 @@ class NENDO_API HandSkeleton {
 public:
   explicit HandSkeleton(Side side, const HandSize& size = {});
 
-  /// Makes a skeleton from a wearer's measured bones. The bases and directions of the metacarpals
-  /// are those of an average hand, scaled by the length of the middle finger's bones. Error: as
-  /// bones.check().
-  static Result<HandSkeleton> of_bones(Side side, const BoneLengths& bones);
-
   /// Returns the pose by forward kinematics. T_world_wrist is the pose of the forearm's end; the
   /// wrist's angles rotate the hand about it. An angle that is not finite counts as zero.
   /// Wait-free, no allocation.
@@ -88,8 +68,6 @@ public:
   const Eigen::Vector3d& pad() const noexcept { return pad_m_; }
 
   Side side() const noexcept { return side_; }
-  /// Returns the lengths of this skeleton's bones.
-  BoneLengths bones() const noexcept;
   /// Returns the vector from the parent of `joint` to `joint` at zero angles, in the axes of a
   /// right hand's wrist; metres.
   const Eigen::Vector3d& rest_offset(Joint joint) const noexcept {
@@ -111,7 +89,6 @@ private:
   struct Walk;
 
   static Offsets offsets_of(const HandSize& size);
-  HandSkeleton(Side side, const Offsets& offsets_m, const WearerShape& shape);
 
   Side side_;
   Offsets offsets_m_;

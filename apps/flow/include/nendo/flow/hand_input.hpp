@@ -86,9 +86,6 @@ struct HandInput {
   GloveSample first;            ///< the pose in which the hand grabs the model
   bool gated = true;            ///< hand::SensorGate rejects counts that no hand can cause
   hand::FilterOptions filter{}; ///< filters the joint angles by the samples' times
-  /// Measured bones (HandSkeleton::of_bones) for gloves of the first sample's side, instead of the
-  /// wearer's size. A recording does not keep them.
-  std::optional<hand::HandSkeleton> measured{};
   /// A layer has its own glove and calibration; the hand's bones are those of the first input of
   /// its side.
   std::optional<Layer> layer{};
@@ -98,7 +95,6 @@ struct HandInput {
 
   /// Returns the skeleton for samples from a glove of that side. It always has the side `side`.
   hand::HandSkeleton skeleton(Side glove) const {
-    if (measured && glove == first.side) return *measured;
     return hand::HandSkeleton(side, wearer.of(glove).size);
   }
 };

@@ -54,7 +54,7 @@ struct Setup {
   std::string program;                   ///< the program that recorded it, such as "nendo 0.2.0"
   std::string wearer;                    ///< empty means unknown
   std::vector<driver::GloveInfo> gloves; ///< indexed by their numbers
-  /// Indexed by glove number, also without a loop. Rings and measured bones are omitted.
+  /// Indexed by glove number, also without a loop. Rings are omitted.
   std::vector<flow::HandInput> hands;
   std::optional<LoopSetup> loop; ///< nothing if only gloves were recorded
 };
