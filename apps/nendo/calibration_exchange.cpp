@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/hand/calibration_exchange.hpp>
 #include <nendo/sculpting/find_wearer.hpp>
@@ -173,7 +174,7 @@ Result<void> export_calibration(const ExportOptions& options) {
     std::cout << result->text;
     return {};
   }
-  if (auto done = hand::write_calibration_text(options.out, result->text); !done) return done;
+  if (auto done = replace_file(options.out, result->text); !done) return done;
   report_written(options.out);
   return {};
 }

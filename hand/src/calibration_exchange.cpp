@@ -216,8 +216,4 @@ Result<std::string> read_calibration_text(const std::filesystem::path& path) {
   return read_file(path, max_calibration_bytes, "calibration");
 }
 
-Result<void> write_calibration_text(const std::filesystem::path& path, std::string_view text) {
-  return replace_file(path, text);
-}
-
 } // namespace nendo::hand

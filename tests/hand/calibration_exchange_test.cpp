@@ -14,7 +14,6 @@
 #include <nendo/hand/joint_angles.hpp>
 
 #include "support/random_calibration.hpp"
-#include "support/temporary_folder.hpp"
 
 namespace calibration_exchange_test {
 
@@ -441,16 +440,6 @@ TEST_SUITE("calibration exchange") {
     CHECK(format_of("user = \"a\"\nversion = 1\n") == CalibrationFormat::toml);
     CHECK(format_of("0:1 2:3\n") == CalibrationFormat::two_point);
     CHECK(format_of("VHv2.0\n") == CalibrationFormat::virtualhand);
-  }
-
-  TEST_CASE("an exported text replaces a file or leaves it") {
-    const nendo::test::TemporaryFolder folder;
-    const auto path = folder.path() / "x.csv";
-    REQUIRE(write_calibration_text(path, "one"));
-    REQUIRE(write_calibration_text(path, "two"));
-    CHECK(*read_calibration_text(path) == "two");
-    CHECK_FALSE(write_calibration_text(folder.path(), "three"));
-    CHECK_FALSE(write_calibration_text(folder.path() / "none" / "x.csv", "three"));
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Reads and writes the calibrations of other programs. A text is used only if all of it is valid.
-// Only the last two functions access files.
+// Only the last function accesses files.
 //
 // Signs: the vendor's angle is -gain * (count - offset) in a frame where flexion is negative. Its
 // positive gains are therefore also positive in our frame, where flexion and spreading are
@@ -89,8 +89,5 @@ NENDO_API Result<ExportedCalibration> ros_xml_text(const Calibration& calibratio
 
 /// Reads a regular file of at most 1 MiB; a pipe or a device is refused. Blocks. Error: bad_input.
 NENDO_API Result<std::string> read_calibration_text(const std::filesystem::path& path);
-/// Writes the whole text, or leaves the file unchanged on failure. Blocks. Error: failed.
-NENDO_API Result<void> write_calibration_text(const std::filesystem::path& path,
-                                              std::string_view text);
 
 } // namespace nendo::hand
