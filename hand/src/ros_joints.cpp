@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <utility>
 
@@ -23,9 +22,11 @@ constexpr double max_angle_deg = 1e9; // a steep line is far beyond its joint at
 constexpr double reported_deviation_deg = 0.05;
 
 std::string fixed_text(double value, int decimals) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
+  std::array<char, 400> text{}; // the largest double has 309 digits before the point
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
+                                 std::chars_format::fixed, decimals)
+                       .ptr;
+  return {text.data(), end};
 }
 
 std::optional<std::size_t> slot_named(std::string_view name) {
@@ -162,14 +163,6 @@ private:
   std::vector<std::string> notes_;
 };
 
-std::string number_text(double value) {
-  std::array<char, 400> digits{}; // the largest double has 309 before the point
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
-                                 std::chars_format::fixed, 9)
-                       .ptr;
-  return {digits.data(), end};
-}
-
 /// Writes `text`, two points of each sensor's line as `joint_text` writes them, and `end`.
 template <class JointText>
 Result<ExportedCalibration> written(const Calibration& calibration, CountScale counts,
@@ -192,7 +185,7 @@ Result<ExportedCalibration> written(const Calibration& calibration, CountScale c
     }
     const auto angle_text = [&](double raw) { // where the sensor's range begins and ends
       const double count = (ros_first_count + ros_counts * raw) / scale;
-      return number_text(to_degrees(line.gain_rad_per_count * (count - line.offset_counts)));
+      return fixed_text(to_degrees(line.gain_rad_per_count * (count - line.offset_counts)), 9);
     };
     result.text += joint_text(std::string(ros_names[slot]), angle_text(0.0), angle_text(1.0));
     any = true;
