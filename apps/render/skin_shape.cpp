@@ -13,6 +13,8 @@ using Eigen::Vector3f;
 using Eigen::Vector3i;
 using hand::HandPose;
 using hand::Joint;
+using hand::joint_after;
+using hand::metacarpals;
 
 namespace {
 
@@ -26,13 +28,6 @@ constexpr float at_thumb_m = 14 * mm;
 constexpr float between_fingers_m = 6 * mm; // only where they leave the palm
 constexpr float at_cut_m = 13 * mm;
 
-constexpr std::array<Joint, 5> roots{Joint::thumb_metacarpal, Joint::index_metacarpal,
-                                     Joint::middle_metacarpal, Joint::ring_metacarpal,
-                                     Joint::little_metacarpal};
-
-Joint after(Joint joint, std::size_t steps) {
-  return static_cast<Joint>(hand::index_of(joint) + steps);
-}
 Vector3f place_of(const HandPose& pose, Joint joint) {
   return pose[joint].translation().cast<float>();
 }
@@ -108,11 +103,11 @@ HandFlesh::HandFlesh(const HandPose& pose) {
   add_webs(pose);
   add_forearm(pose);
   add_thumb(pose);
-  for (std::size_t finger = 1; finger < roots.size(); ++finger)
+  for (std::size_t finger = 1; finger < metacarpals.size(); ++finger)
     add_finger(pose, finger);
   prepare(palm_);
   palm_box_ = box_of(palm_);
-  for (std::size_t finger = 0; finger < roots.size(); ++finger) {
+  for (std::size_t finger = 0; finger < metacarpals.size(); ++finger) {
     prepare(fingers_[finger]);
     finger_boxes_[finger] = box_of(fingers_[finger]);
   }
@@ -123,13 +118,13 @@ void HandFlesh::add_metacarpals(const HandPose& pose) {
   const Vector3f right = axis_of(pose, Joint::wrist, 0);
   const Vector3f up = axis_of(pose, Joint::wrist, 1);
   const Vector3f back = axis_of(pose, Joint::wrist, 2);
-  for (std::size_t finger = 1; finger < roots.size(); ++finger) {
-    const Joint root = roots[finger];
+  for (std::size_t finger = 1; finger < metacarpals.size(); ++finger) {
+    const Joint root = metacarpals[finger];
     const float head = hand::average_finger_radii[finger].knuckle_mm * mm;
     // Those of index and middle finger are fixed to the wrist.
     const Joint carrier = finger < 3 ? Joint::wrist : root;
     palm_.push_back(round_part(place_of(pose, root) - 4.5F * mm * up,
-                               place_of(pose, after(root, 1)) - 2 * mm * up, 10 * mm, head,
+                               place_of(pose, joint_after(root, 1)) - 2 * mm * up, 10 * mm, head,
                                in_palm_m, {Joint::wrist, carrier}));
   }
   // The pads below the knuckles.
@@ -162,14 +157,15 @@ void HandFlesh::add_thumb_side(const HandPose& pose) {
 
 // Fingers part from one another well after their knuckles.
 void HandFlesh::add_webs(const HandPose& pose) {
-  for (std::size_t finger = 1; finger + 1 < roots.size(); ++finger) {
+  for (std::size_t finger = 1; finger + 1 < metacarpals.size(); ++finger) {
     const auto beside = [&](std::size_t which) -> Vector3f {
-      const Joint proximal = after(roots[which], 1);
-      return between(place_of(pose, proximal), place_of(pose, after(proximal, 1)), 0.34F) -
+      const Joint proximal = joint_after(metacarpals[which], 1);
+      return between(place_of(pose, proximal), place_of(pose, joint_after(proximal, 1)), 0.34F) -
              2.5F * mm * axis_of(pose, proximal, 1);
     };
-    palm_.push_back(round_part(beside(finger), beside(finger + 1), 5 * mm, 5 * mm, 10 * mm,
-                               {after(roots[finger], 1), after(roots[finger + 1], 1)}));
+    palm_.push_back(
+        round_part(beside(finger), beside(finger + 1), 5 * mm, 5 * mm, 10 * mm,
+                   {joint_after(metacarpals[finger], 1), joint_after(metacarpals[finger + 1], 1)}));
   }
 }
 
@@ -192,9 +188,11 @@ void HandFlesh::add_forearm(const HandPose& pose) {
 
 void HandFlesh::add_thumb(const HandPose& pose) {
   const hand::FingerRadii& radii = hand::average_finger_radii[0];
-  const auto at = [&](std::size_t step) { return place_of(pose, after(roots[0], step)); };
+  const auto at = [&](std::size_t step) {
+    return place_of(pose, joint_after(metacarpals[0], step));
+  };
   const auto carried = [](std::size_t step) {
-    return std::array{after(roots[0], step), after(roots[0], step)};
+    return std::array{joint_after(metacarpals[0], step), joint_after(metacarpals[0], step)};
   };
   const Vector3f up = axis_of(pose, Joint::thumb_distal, 1);
   const Vector3f along = (at(3) - at(2)).normalized();
@@ -216,10 +214,10 @@ void HandFlesh::add_finger(const HandPose& pose, std::size_t finger) {
                                       radii.end_mm * mm, radii.tip_mm * mm};
   std::vector<FleshPart>& parts = fingers_[finger];
   for (std::size_t bone = 0; bone < 3; ++bone) {
-    const Joint joint = after(roots[finger], bone + 1);
+    const Joint joint = joint_after(metacarpals[finger], bone + 1);
     const Vector3f up = axis_of(pose, joint, 1);
     const Vector3f from = place_of(pose, joint) - 1 * mm * up;
-    const Vector3f to = place_of(pose, after(joint, 1)) - 1 * mm * up;
+    const Vector3f to = place_of(pose, joint_after(joint, 1)) - 1 * mm * up;
     const bool is_last = bone == 2;
     const Vector3f end = is_last ? Vector3f(to - radius_m[3] * (to - from).normalized()) : to;
     parts.push_back({from,

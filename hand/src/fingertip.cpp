@@ -7,10 +7,6 @@
 namespace nendo::hand {
 namespace {
 
-constexpr std::array<Joint, finger_count> metacarpals{
-    Joint::thumb_metacarpal, Joint::index_metacarpal, Joint::middle_metacarpal,
-    Joint::ring_metacarpal, Joint::little_metacarpal};
-
 /// Where a bone, or a row of them, leads in the plane in which a finger bends: so far ahead, so far
 /// towards the palm. Turned by a right angle it is the derivative by the angle at its root.
 struct Reach {

@@ -91,18 +91,10 @@ Vector3d way_out(const BodyPart& part) noexcept {
   return way.norm() > 0.0 ? way.unitOrthogonal() : Vector3d::UnitZ();
 }
 
-Joint after(Joint joint, std::size_t steps) noexcept {
-  return static_cast<Joint>(index_of(joint) + steps);
-}
-
-constexpr std::array<Joint, finger_count> roots{Joint::thumb_metacarpal, Joint::index_metacarpal,
-                                                Joint::middle_metacarpal, Joint::ring_metacarpal,
-                                                Joint::little_metacarpal};
-
 double middle_finger_m(const HandSkeleton& skeleton) noexcept {
   double sum_m = 0.0;
   for (std::size_t bone = 1; bone <= 4; ++bone)
-    sum_m += skeleton.rest_offset(after(Joint::middle_metacarpal, bone)).norm();
+    sum_m += skeleton.rest_offset(joint_after(Joint::middle_metacarpal, bone)).norm();
   return sum_m;
 }
 
@@ -160,7 +152,7 @@ private:
 
   void add_thumb() noexcept {
     const FingerRadii& radii = average_finger_radii[0];
-    const Corner base = corner(place(roots[0]), 14.0);
+    const Corner base = corner(place(metacarpals[0]), 14.0);
     const Corner knuckle = corner(place(Joint::thumb_proximal), radii.knuckle_mm);
     const Corner end = corner(place(Joint::thumb_distal), radii.end_mm);
     add(base, knuckle, Joint::thumb_metacarpal);
@@ -171,33 +163,37 @@ private:
   // Bones lie nearer to the back of a finger than to its pad.
   void add_finger(std::size_t finger) noexcept {
     const FingerRadii& radii = average_finger_radii[finger];
-    const Joint joint = after(roots[finger], 1);
+    const Joint joint = joint_after(metacarpals[finger], 1);
     const Corner knuckle = corner(below(joint, 1.0), radii.knuckle_mm);
-    const Corner middle = corner(below(after(joint, 1), 1.0), radii.middle_mm);
-    const Corner end = corner(below(after(joint, 2), 1.0), radii.end_mm);
+    const Corner middle = corner(below(joint_after(joint, 1), 1.0), radii.middle_mm);
+    const Corner end = corner(below(joint_after(joint, 2), 1.0), radii.end_mm);
     add(knuckle, middle, joint);
-    add(middle, end, after(joint, 1));
-    add(end, end_of(end.place_m, below(after(joint, 3), 1.0), radii.tip_mm), after(joint, 2));
+    add(middle, end, joint_after(joint, 1));
+    add(end, end_of(end.place_m, below(joint_after(joint, 3), 1.0), radii.tip_mm),
+        joint_after(joint, 2));
   }
 
   // Most flesh of the palm lies below the bones.
-  Corner heel(std::size_t finger) const noexcept { return corner(below(roots[finger], 5.0), 11.5); }
+  Corner heel(std::size_t finger) const noexcept {
+    return corner(below(metacarpals[finger], 5.0), 11.5);
+  }
   Corner head(std::size_t finger) const noexcept {
-    return corner(below(roots[finger], 4.5) + place(after(roots[finger], 1)) - place(roots[finger]),
+    return corner(below(metacarpals[finger], 4.5) + place(joint_after(metacarpals[finger], 1)) -
+                      place(metacarpals[finger]),
                   12.0);
   }
   void add_palm(std::size_t finger) noexcept {
-    add(heel(finger), head(finger), head(finger + 1), roots[finger]);
-    add(heel(finger), head(finger + 1), heel(finger + 1), roots[finger + 1]);
+    add(heel(finger), head(finger), head(finger + 1), metacarpals[finger]);
+    add(heel(finger), head(finger + 1), heel(finger + 1), metacarpals[finger + 1]);
   }
 
   // The ball of the thumb runs into the palm.
   void add_thumb_side() noexcept {
-    const Corner base = corner(place(roots[0]), 14.0);
+    const Corner base = corner(place(metacarpals[0]), 14.0);
     const Corner on_thumb =
-        corner(0.34 * place(roots[0]) + 0.66 * place(Joint::thumb_proximal), 10.0);
+        corner(0.34 * place(metacarpals[0]) + 0.66 * place(Joint::thumb_proximal), 10.0);
     const Corner on_index =
-        corner(0.4 * below(roots[1], 3.0) + 0.6 * below(Joint::index_proximal, 3.0), 9.5);
+        corner(0.4 * below(metacarpals[1], 3.0) + 0.6 * below(Joint::index_proximal, 3.0), 9.5);
     add(base, on_thumb, on_index, Joint::thumb_metacarpal);
     add(base, on_index, heel(1), Joint::wrist);
   }
@@ -205,10 +201,10 @@ private:
   // Fingers part from one another well after their knuckles.
   void add_web(std::size_t finger) noexcept {
     const auto beside = [&](std::size_t which) {
-      const Joint joint = after(roots[which], 1);
-      return corner(0.66 * below(joint, 2.5) + 0.34 * below(after(joint, 1), 2.5), 5.0);
+      const Joint joint = joint_after(metacarpals[which], 1);
+      return corner(0.66 * below(joint, 2.5) + 0.34 * below(joint_after(joint, 1), 2.5), 5.0);
     };
-    add(beside(finger), beside(finger + 1), after(roots[finger], 1));
+    add(beside(finger), beside(finger + 1), joint_after(metacarpals[finger], 1));
   }
 
   const HandPose& pose_;

@@ -1,5 +1,7 @@
 #include <nendo/hand/joints.hpp>
 
+#include <algorithm>
+
 namespace nendo::hand {
 namespace {
 
@@ -35,12 +37,6 @@ constexpr std::array<std::string_view, joint_count> names{
 constexpr std::array<std::string_view, finger_count> finger_names{"thumb", "index", "middle",
                                                                   "ring", "little"};
 
-constexpr bool is_metacarpal(Joint joint) noexcept {
-  return joint == Joint::thumb_metacarpal || joint == Joint::index_metacarpal ||
-         joint == Joint::middle_metacarpal || joint == Joint::ring_metacarpal ||
-         joint == Joint::little_metacarpal;
-}
-
 } // namespace
 
 std::string_view name_of(Joint joint) noexcept {
@@ -53,7 +49,9 @@ std::string_view name_of(Finger finger) noexcept {
 
 std::optional<Joint> parent_of(Joint joint) noexcept {
   if (joint == Joint::wrist) return std::nullopt;
-  if (joint == Joint::palm || is_metacarpal(joint)) return Joint::wrist;
+  if (joint == Joint::palm ||
+      std::find(metacarpals.begin(), metacarpals.end(), joint) != metacarpals.end())
+    return Joint::wrist;
   return static_cast<Joint>(index_of(joint) - 1); // a finger's joints are in order
 }
 

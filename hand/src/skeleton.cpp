@@ -50,10 +50,6 @@ Matrix3d pointing(const Vector3d& direction) {
   return angle_rad > 0.0 ? AngleAxisd(angle_rad, axis.normalized()).matrix() : Matrix3d::Identity();
 }
 
-Joint joint_after(Joint joint, std::size_t steps) {
-  return static_cast<Joint>(index_of(joint) + steps);
-}
-
 /// A joint's frame while the hand is walked through: the columns of its homogeneous matrix. A turn
 /// about one of its own axes only mixes the other two, a bone only moves the origin, so that no
 /// matrices are multiplied. Columns have four rows because the vector unit takes them by twos.

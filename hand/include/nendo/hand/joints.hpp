@@ -46,6 +46,10 @@ constexpr std::size_t index_of(Joint joint) noexcept {
   return static_cast<std::size_t>(joint);
 }
 
+/// Returns the joint that is so many `steps` later in the order: along a finger, nearer to its tip.
+constexpr Joint joint_after(Joint joint, std::size_t steps) noexcept {
+  return static_cast<Joint>(index_of(joint) + steps);
+}
 NENDO_API std::string_view name_of(Joint joint) noexcept;
 
 /// Returns the parent joint, or nullopt for the wrist, which is the root and the palm's parent.
@@ -57,6 +61,9 @@ inline constexpr std::size_t finger_count = 5;
 
 NENDO_API std::string_view name_of(Finger finger) noexcept;
 
+inline constexpr std::array<Joint, finger_count> metacarpals{
+    Joint::thumb_metacarpal, Joint::index_metacarpal, Joint::middle_metacarpal,
+    Joint::ring_metacarpal, Joint::little_metacarpal};
 inline constexpr std::array<Joint, finger_count> fingertips{
     Joint::thumb_tip, Joint::index_tip, Joint::middle_tip, Joint::ring_tip, Joint::little_tip};
 
