@@ -5,8 +5,6 @@
 
 #include <nendo/base/units.hpp>
 
-#include "finger_rules.hpp"
-
 namespace nendo::hand {
 namespace {
 
@@ -32,9 +30,7 @@ void set_left_out(AngleSources& sources, SensorMask present, SensorMask left_out
       by_thumb(Sensor::thumb_mcp, AngleSource::from_mcp));
   set(Angle::thumb_roll, Sensor::thumb_roll, AngleSource::at_rest);
   set(Angle::thumb_abduction, Sensor::thumb_abduction, AngleSource::at_rest);
-  const bool any_gap = measured.has(Sensor::index_middle_abduction) ||
-                       measured.has(Sensor::middle_ring_abduction) ||
-                       measured.has(Sensor::ring_little_abduction);
+  const bool any_gap = (measured.bits & mask_of(gap_sensors).bits) != 0;
   const auto by_gaps = any_gap ? AngleSource::from_gaps : AngleSource::at_rest;
   set(Angle::index_mcp_abduction, Sensor::index_middle_abduction, by_gaps);
   set(Angle::ring_mcp_abduction, Sensor::middle_ring_abduction, by_gaps);

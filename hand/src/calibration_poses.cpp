@@ -4,8 +4,6 @@
 
 #include <nendo/base/units.hpp>
 
-#include "finger_rules.hpp"
-
 namespace nendo::hand {
 namespace {
 

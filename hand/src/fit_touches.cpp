@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "finger_rules.hpp"
 #include "fit_priors.hpp"
 #include "fit_problem.hpp"
 

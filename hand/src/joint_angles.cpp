@@ -4,18 +4,25 @@
 
 #include <nendo/hand/joint_limits.hpp>
 
-#include "finger_rules.hpp"
-
 namespace nendo::hand {
 namespace {
 
 // The rules of the header. The thumb's were chosen with this skeleton: of the ends from 20 to 90
 // degrees of roll and 10 to 65 of abduction, these bring the tips together.
 constexpr double thumb_ip_of_mcp = 0.5;
+constexpr double pip_of_mcp = 1.1;
 constexpr double resting_opposition = from_degrees(20);
 constexpr double max_roll = from_degrees(30);
 constexpr double max_abduction = from_degrees(35);
 constexpr double fully_bent_thumb_mcp = from_degrees(55);
+
+constexpr double bent(double angle_rad) noexcept {
+  return std::max(angle_rad, 0.0);
+}
+
+constexpr double estimated_dip(double pip_rad) noexcept {
+  return 0.32 * bent(pip_rad) * bent(pip_rad) + 0.17 * bent(pip_rad);
+}
 
 /// The estimate of thumb roll or abduction, which reaches `max_rad`.
 constexpr double estimated_opposition(double thumb_mcp_rad, double max_rad) noexcept {
@@ -107,8 +114,6 @@ const double& angle_in(const JointAngles& angles, Angle angle) noexcept {
 }
 
 constexpr std::size_t mcp_at = 0, pip_at = 1, dip_at = 2;
-constexpr std::array<Sensor, 3> gap_sensors{
-    Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_little_abduction};
 
 constexpr double resting_mcp = from_degrees(25), resting_pip = from_degrees(35);
 constexpr double resting_thumb_mcp = from_degrees(15), resting_thumb_ip = from_degrees(20);

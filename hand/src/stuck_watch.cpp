@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "finger_rules.hpp"
-
 namespace nendo::hand {
 namespace {
 

@@ -163,12 +163,8 @@ constexpr std::array<std::array<Sensor, joints>, fingers> joint_slots{
      {none, Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip},
      {none, Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip},
      {none, Sensor::little_mcp, Sensor::little_pip, Sensor::little_dip}}};
-constexpr std::size_t mcp = 1;
-
-/// Between finger k and the next, from the index finger on.
-constexpr std::size_t index = 1;
-constexpr std::array<Sensor, fingers - 2> pair_slots{
-    Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_little_abduction};
+constexpr std::size_t mcp = 1;   ///< a joint
+constexpr std::size_t index = 1; ///< a finger
 
 std::uint16_t apart(std::uint16_t one, std::uint16_t other, std::uint16_t range) noexcept {
   const int difference = one > other ? one - other : other - one;
@@ -209,10 +205,10 @@ void fill_slots(const Line& line, std::uint16_t range, GloveSample& sample) noex
     }
   }
   if (line.splay[0]) sample.set(Sensor::thumb_abduction, RawCount{*line.splay[0]});
-  for (std::size_t pair = 0; pair < pair_slots.size(); ++pair) {
+  for (std::size_t pair = 0; pair < gap_sensors.size(); ++pair) {
     const auto& one = line.splay[index + pair];
     const auto& other = line.splay[index + pair + 1];
-    if (one && other) sample.set(pair_slots[pair], RawCount{apart(*one, *other, range)});
+    if (one && other) sample.set(gap_sensors[pair], RawCount{apart(*one, *other, range)});
   }
 }
 

@@ -29,18 +29,7 @@ constexpr std::array<MotionName, 6> motions{{{"rest", Motion::rest},
                                              {"sculpt", Motion::sculpt},
                                              {"faces", Motion::faces}}};
 
-struct Finger {
-  Sensor mcp;
-  Sensor pip;
-  Sensor dip;
-};
-constexpr std::array<Finger, 4> fingers{
-    {{Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip},
-     {Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip},
-     {Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip},
-     {Sensor::little_mcp, Sensor::little_pip, Sensor::little_dip}}};
-constexpr std::array<Sensor, 3> finger_pairs{
-    Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_little_abduction};
+constexpr std::size_t mcp_at = 0, pip_at = 1; ///< in a row of finger_sensors
 
 constexpr double& slot(Pose& pose, Sensor sensor) noexcept {
   return pose[static_cast<std::size_t>(sensor)];
@@ -106,12 +95,12 @@ Pose wave(const Character& hand, double time_s) noexcept {
   constexpr double period_s = 2.5;
   const double cycle = time_s * hand.tempo / period_s + hand.phase;
   Pose add{};
-  for (std::size_t k = 0; k < fingers.size(); ++k) {
+  for (std::size_t k = 0; k < finger_sensors.size(); ++k) {
     const double bend = swell(cycle - 0.13 * static_cast<double>(k) - hand.lag[k]);
-    slot(add, fingers[k].mcp) = hand.amplitude[k] * (60.0 * bend - 15.0);
-    slot(add, fingers[k].pip) = hand.amplitude[k] * (65.0 * bend - 20.0);
+    slot(add, finger_sensors[k][mcp_at]) = hand.amplitude[k] * (60.0 * bend - 15.0);
+    slot(add, finger_sensors[k][pip_at]) = hand.amplitude[k] * (65.0 * bend - 20.0);
   }
-  for (const Sensor gap : finger_pairs)
+  for (const Sensor gap : gap_sensors)
     slot(add, gap) = 4.0 * sine(cycle);
   const double thumb = swell(cycle + 0.13);
   slot(add, Sensor::thumb_roll) = 12.0 * thumb;
@@ -126,21 +115,21 @@ struct Pinch {
   double mcp, pip;
   double roll, abduction, thumb_mcp, thumb_ip, arch;
 };
-constexpr std::array<Pinch, fingers.size()> pinches{{{26, 18, 5, -2, 11, 16, 0},
-                                                     {26, 23, 20, 0, 19, 19, 3},
-                                                     {23, 26, 32, 5, 26, 23, 3},
-                                                     {27, 29, 35, 0, 40, 25, 3}}};
+constexpr std::array<Pinch, finger_sensors.size()> pinches{{{26, 18, 5, -2, 11, 16, 0},
+                                                            {26, 23, 20, 0, 19, 19, 3},
+                                                            {23, 26, 32, 5, 26, 23, 3},
+                                                            {27, 29, 35, 0, 40, 25, 3}}};
 
 Pose pinch(const Character& hand, double time_s) noexcept {
   constexpr double period_s = 6.0;
   const double cycle = time_s * hand.tempo / period_s + hand.phase;
   Pose add{};
-  for (std::size_t k = 0; k < fingers.size(); ++k) {
+  for (std::size_t k = 0; k < finger_sensors.size(); ++k) {
     const double number = static_cast<double>(k);
     const double touch = plateau(cycle - 0.25 * number, 0.01, 0.09, 0.15, 0.23);
     const Pinch& by = pinches[k];
-    slot(add, fingers[k].mcp) = hand.amplitude[k] * by.mcp * touch;
-    slot(add, fingers[k].pip) = hand.amplitude[k] * by.pip * touch;
+    slot(add, finger_sensors[k][mcp_at]) = hand.amplitude[k] * by.mcp * touch;
+    slot(add, finger_sensors[k][pip_at]) = hand.amplitude[k] * by.pip * touch;
     slot(add, Sensor::thumb_roll) += by.roll * touch;
     slot(add, Sensor::thumb_abduction) += by.abduction * touch;
     slot(add, Sensor::thumb_mcp) += by.thumb_mcp * touch;
@@ -155,12 +144,12 @@ Pose grasp(const Character& hand, double time_s) noexcept {
   const double cycle = time_s * hand.tempo / period_s + hand.phase;
   const double closed = swell(cycle);
   Pose add{};
-  for (std::size_t k = 0; k < fingers.size(); ++k) {
+  for (std::size_t k = 0; k < finger_sensors.size(); ++k) {
     const double bend = swell(cycle - hand.lag[k]);
-    slot(add, fingers[k].mcp) = hand.amplitude[k] * (65.0 * bend - 15.0);
-    slot(add, fingers[k].pip) = hand.amplitude[k] * (78.0 * bend - 22.0);
+    slot(add, finger_sensors[k][mcp_at]) = hand.amplitude[k] * (65.0 * bend - 15.0);
+    slot(add, finger_sensors[k][pip_at]) = hand.amplitude[k] * (78.0 * bend - 22.0);
   }
-  for (const Sensor gap : finger_pairs)
+  for (const Sensor gap : gap_sensors)
     slot(add, gap) = 6.0 - 9.0 * closed;
   slot(add, Sensor::thumb_roll) = 22.0 * closed - 8.0;
   slot(add, Sensor::thumb_mcp) = 28.0 * closed - 6.0;
@@ -179,19 +168,19 @@ Pose sculpt(const Character& hand, double time_s) noexcept {
   const auto pressing = [](double at) { return plateau(at, 0.52, 0.68, 0.86, 0.99); };
   const double cycle = time_s * hand.tempo / period_s + hand.phase;
   Pose add{};
-  for (std::size_t k = 0; k < fingers.size(); ++k) {
+  for (std::size_t k = 0; k < finger_sensors.size(); ++k) {
     const double turn = 0.25 * static_cast<double>(k);
     const double press = pressing(cycle - hand.lag[k]);
     const double depth = hand.amplitude[k] * (press - pulling(cycle - hand.lag[k]));
     const double knead = press * sine(knead_hz * time_s - turn);
     const double fidget =
         sine(0.6 * time_s + 1.5 * turn); // the short spells between press and pull live, too
-    slot(add, fingers[k].mcp) = 13.0 * depth + 3.0 * knead + fidget;
-    slot(add, fingers[k].pip) = 10.0 * depth + 2.0 * knead + 0.5 * fidget;
+    slot(add, finger_sensors[k][mcp_at]) = 13.0 * depth + 3.0 * knead + fidget;
+    slot(add, finger_sensors[k][pip_at]) = 10.0 * depth + 2.0 * knead + 0.5 * fidget;
   }
   const double press = pressing(cycle);
   const double pull = pulling(cycle);
-  for (const Sensor gap : finger_pairs)
+  for (const Sensor gap : gap_sensors)
     slot(add, gap) = 2.0 * press - 5.0 * pull;
   const double knead = press * sine(knead_hz * time_s + 0.5);
   slot(add, Sensor::thumb_roll) = 8.0 * press - 5.0 * pull + 2.0 * knead;
@@ -233,9 +222,9 @@ Pose faces(Side side, double time_s) noexcept {
     bend[0] *= side == Side::left ? swell(0.5 * talk_hz * time_s) : swell(talk_hz * time_s);
   slot(add, Sensor::thumb_mcp) = 15.0 * size * bend[0];
   slot(add, Sensor::thumb_ip) = 25.0 * size * bend[0];
-  for (std::size_t k = 0; k < fingers.size(); ++k) {
-    slot(add, fingers[k].mcp) = 30.0 * size * bend[k + 1];
-    slot(add, fingers[k].pip) = 36.0 * size * bend[k + 1];
+  for (std::size_t k = 0; k < finger_sensors.size(); ++k) {
+    slot(add, finger_sensors[k][mcp_at]) = 30.0 * size * bend[k + 1];
+    slot(add, finger_sensors[k][pip_at]) = 36.0 * size * bend[k + 1];
   }
   slot(add, Sensor::index_middle_abduction) = 14.0 * size * bend[5];
   return add;
@@ -327,7 +316,7 @@ HandMotion::HandMotion(Motion motion, Side side, std::uint32_t seed) noexcept
   };
   character_.tempo = between(0.97, 1.03);
   character_.phase = between(0.0, 0.03) + (side == Side::left ? 0.08 : 0.0);
-  for (std::size_t k = 0; k < fingers.size(); ++k) {
+  for (std::size_t k = 0; k < finger_sensors.size(); ++k) {
     character_.amplitude[k] = between(0.94, 1.08);
     character_.lag[k] = 0.012 * static_cast<double>(k) + between(0.0, 0.01);
   }
@@ -351,8 +340,8 @@ JointAngles HandMotion::at(double time_s) const noexcept {
   }
   // Few people can bend a DIP joint alone: the tendons make it follow the PIP joint by about two
   // thirds.
-  for (const Finger& finger : fingers)
-    slot(pose, finger.dip) = 2.0 / 3.0 * slot(pose, finger.pip);
+  for (const auto& [of_mcp, of_pip, of_dip] : finger_sensors)
+    slot(pose, of_dip) = 2.0 / 3.0 * slot(pose, of_pip);
   for (double& angle : pose)
     angle = from_degrees(angle);
   return pose;

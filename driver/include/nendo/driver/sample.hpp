@@ -80,10 +80,18 @@ constexpr std::size_t index_of(Sensor sensor) noexcept {
   return static_cast<std::size_t>(sensor);
 }
 
-/// Returns whether the sensor measures the gap between two neighbouring fingers.
+/// MCP, PIP and DIP of index, middle, ring and little finger.
+inline constexpr std::array<std::array<Sensor, 3>, 4> finger_sensors{{
+    {Sensor::index_mcp, Sensor::index_pip, Sensor::index_dip},
+    {Sensor::middle_mcp, Sensor::middle_pip, Sensor::middle_dip},
+    {Sensor::ring_mcp, Sensor::ring_pip, Sensor::ring_dip},
+    {Sensor::little_mcp, Sensor::little_pip, Sensor::little_dip},
+}};
+/// The sensors of the gaps between neighbouring fingers, from the index finger on.
+inline constexpr std::array<Sensor, 3> gap_sensors{
+    Sensor::index_middle_abduction, Sensor::middle_ring_abduction, Sensor::ring_little_abduction};
 constexpr bool is_gap(Sensor sensor) noexcept {
-  return sensor == Sensor::index_middle_abduction || sensor == Sensor::middle_ring_abduction ||
-         sensor == Sensor::ring_little_abduction;
+  return sensor == gap_sensors[0] || sensor == gap_sensors[1] || sensor == gap_sensors[2];
 }
 
 /// A set of sensor slots; bit k is slot k, as in the glove's own masks.
