@@ -17,6 +17,7 @@
 #include <sys/inotify.h>
 #include <unistd.h>
 
+#include <nendo/base/unique_fd.hpp>
 #include <nendo/base/units.hpp>
 
 #include "discovery/candidates.hpp"
@@ -56,16 +57,13 @@ UdevMonitor watch_devices(::udev* context) {
 
 class EventWatcher final : public DeviceWatcher {
 public:
-  EventWatcher(int nodes, int stop_event) : nodes_(nodes), stop_event_(stop_event) {
+  EventWatcher(UniqueFd nodes, UniqueFd stop_event)
+      : nodes_(std::move(nodes)), stop_event_(std::move(stop_event)) {
     // Listed after it began to watch: what arrives between the two is announced, or was there.
     present_ = list_candidates();
     add_holders(present_);
     for (const GloveCandidate& candidate : present_)
       known_.emplace(key_of(candidate), candidate);
-  }
-  ~EventWatcher() override {
-    ::close(nodes_);
-    ::close(stop_event_);
   }
 
   const std::vector<GloveCandidate>& present() const noexcept override { return present_; }
@@ -93,7 +91,7 @@ public:
   void stop() noexcept override {
     stopped_ = true;
     const std::uint64_t one = 1;
-    [[maybe_unused]] const ssize_t written = ::write(stop_event_, &one, sizeof one);
+    [[maybe_unused]] const ssize_t written = ::write(stop_event_.get(), &one, sizeof one);
   }
 
 private:
@@ -101,7 +99,7 @@ private:
   Woken wait(HostTime until) {
     const int events = monitor_ ? udev_monitor_get_fd(monitor_.get()) : -1; // poll() leaves -1 out
     std::array<pollfd, 3> entries{
-        pollfd{events, POLLIN, 0}, {nodes_, POLLIN, 0}, {stop_event_, POLLIN, 0}};
+        pollfd{events, POLLIN, 0}, {nodes_.get(), POLLIN, 0}, {stop_event_.get(), POLLIN, 0}};
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - HostClock::now());
     const int wait_ms = static_cast<int>(std::clamp<long>(left.count(), 0, 60'000));
     if (::poll(entries.data(), entries.size(), wait_ms) < 0)
@@ -110,7 +108,7 @@ private:
     // What they say does not matter: look() compares what is there with what was.
     while (monitor_ && UdevDevice(udev_monitor_receive_device(monitor_.get()))) {
     }
-    for (std::array<char, 4096> unread{}; ::read(nodes_, unread.data(), unread.size()) > 0;) {
+    for (std::array<char, 4096> unread{}; ::read(nodes_.get(), unread.data(), unread.size()) > 0;) {
     }
     return Woken::by_change;
   }
@@ -139,8 +137,8 @@ private:
 
   const UdevContext context_{udev_new()};
   const UdevMonitor monitor_ = watch_devices(context_.get());
-  const int nodes_;      ///< inotify, on /dev: containers may get the nodes alone, without events
-  const int stop_event_; ///< readable once stop() was called
+  const UniqueFd nodes_; ///< inotify, on /dev: containers may get the nodes alone, without events
+  const UniqueFd stop_event_; ///< readable once stop() was called
   std::atomic<bool> stopped_{false};
   std::vector<GloveCandidate> present_;
   std::map<std::string, GloveCandidate> known_; ///< announced, by key
@@ -152,20 +150,19 @@ private:
 } // namespace
 
 Result<std::unique_ptr<DeviceWatcher>> DeviceWatcher::open() {
-  const int nodes = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-  const int stop_event = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-  const auto fail = [&](const std::string& what) {
-    const std::string reason = std::strerror(errno);
-    ::close(nodes);
-    ::close(stop_event);
-    return Error{Errc::failed, what + ": " + reason +
+  UniqueFd nodes(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
+  UniqueFd stop_event(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
+  const auto fail = [](const std::string& what) {
+    return Error{Errc::failed, what + ": " + std::strerror(errno) +
                                    "; close programs that watch files, or raise "
                                    "fs.inotify.max_user_instances (sysctl)"};
   };
-  if (nodes < 0 || stop_event < 0) return fail("devices cannot be watched");
-  if (::inotify_add_watch(nodes, "/dev/", IN_CREATE | IN_DELETE | IN_MOVED_TO | IN_MOVED_FROM) < 0)
+  if (!nodes.is_open() || !stop_event.is_open()) return fail("devices cannot be watched");
+  if (::inotify_add_watch(nodes.get(), "/dev/",
+                          IN_CREATE | IN_DELETE | IN_MOVED_TO | IN_MOVED_FROM) < 0)
     return fail("/dev cannot be watched");
-  return std::unique_ptr<DeviceWatcher>(std::make_unique<EventWatcher>(nodes, stop_event));
+  return std::unique_ptr<DeviceWatcher>(
+      std::make_unique<EventWatcher>(std::move(nodes), std::move(stop_event)));
 }
 
 } // namespace nendo::driver

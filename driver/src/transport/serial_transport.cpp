@@ -8,6 +8,7 @@
 #include <chrono>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include <fcntl.h>
 #include <libserialport.h>
@@ -17,6 +18,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <nendo/base/unique_fd.hpp>
 #include <nendo/base/units.hpp>
 
 namespace nendo::driver {
@@ -70,14 +72,13 @@ std::optional<speed_t> speed_of(int baud) noexcept {
 
 class TermiosTransport final : public Transport {
 public:
-  explicit TermiosTransport(int fd) noexcept : fd_(fd) {}
-  ~TermiosTransport() override { ::close(fd_); }
+  explicit TermiosTransport(UniqueFd fd) noexcept : fd_(std::move(fd)) {}
 
   ReadResult read_some(std::span<std::byte> buffer,
                        std::chrono::milliseconds timeout) noexcept override {
-    const IoStatus ready = wait_fd(fd_, POLLIN, HostClock::now() + timeout);
+    const IoStatus ready = wait_fd(fd_.get(), POLLIN, HostClock::now() + timeout);
     if (ready != IoStatus::done) return {ready, 0};
-    const ssize_t count = ::read(fd_, buffer.data(), buffer.size());
+    const ssize_t count = ::read(fd_.get(), buffer.data(), buffer.size());
     if (count > 0) return {IoStatus::done, static_cast<std::size_t>(count)};
     const bool nothing_yet = count < 0 && (errno == EAGAIN || errno == EINTR);
     return {nothing_yet ? IoStatus::timeout : IoStatus::gone, 0};
@@ -85,23 +86,24 @@ public:
 
   IoStatus write_all(std::span<const std::byte> bytes,
                      std::chrono::milliseconds timeout) noexcept override {
-    return write_all_fd(fd_, bytes, timeout, [this](std::span<const std::byte> rest) -> ssize_t {
-      const ssize_t count = ::write(fd_, rest.data(), rest.size());
-      return count < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : count;
-    });
+    return write_all_fd(fd_.get(), bytes, timeout,
+                        [this](std::span<const std::byte> rest) -> ssize_t {
+                          const ssize_t count = ::write(fd_.get(), rest.data(), rest.size());
+                          return count < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : count;
+                        });
   }
 
-  void discard_input() noexcept override { ::tcflush(fd_, TCIFLUSH); }
+  void discard_input() noexcept override { ::tcflush(fd_.get(), TCIFLUSH); }
 
   bool set_baud(int baud) noexcept override {
     const auto speed = speed_of(baud);
     termios settings{};
-    return speed && ::tcgetattr(fd_, &settings) == 0 && ::cfsetspeed(&settings, *speed) == 0 &&
-           ::tcsetattr(fd_, TCSANOW, &settings) == 0;
+    return speed && ::tcgetattr(fd_.get(), &settings) == 0 &&
+           ::cfsetspeed(&settings, *speed) == 0 && ::tcsetattr(fd_.get(), TCSANOW, &settings) == 0;
   }
 
 private:
-  const int fd_;
+  const UniqueFd fd_;
 };
 
 /// Returns 0 or an error number.
@@ -211,17 +213,14 @@ int open_port(sp_port* port, int baud, int& fd) {
 } // namespace
 
 std::unique_ptr<Transport> transport_of(int fd) {
-  return std::make_unique<TermiosTransport>(fd);
+  return std::make_unique<TermiosTransport>(UniqueFd(fd));
 }
 
 Result<std::unique_ptr<Transport>> open_termios(const std::string& path) {
-  const int fd = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (fd < 0) return open_error(path, errno);
-  if (const int error_number = make_raw_and_lock(fd); error_number != 0) {
-    ::close(fd);
-    return open_error(path, error_number);
-  }
-  return transport_of(fd);
+  UniqueFd fd(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!fd.is_open()) return open_error(path, errno);
+  if (const int e = make_raw_and_lock(fd.get()); e != 0) return open_error(path, e);
+  return std::unique_ptr<Transport>(std::make_unique<TermiosTransport>(std::move(fd)));
 }
 
 Result<std::unique_ptr<Transport>> open_serialport(const std::string& path, int baud) {
