@@ -6,6 +6,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <nendo/driver/glove_options.hpp>
+
 #include "cyberglove/cyberglove_dialogue.hpp"
 #include "cyberglove/cyberglove_identity.hpp"
 #include "cyberglove/cyberglove_options.hpp"
@@ -217,9 +219,7 @@ Result<std::unique_ptr<Glove>> open_cyberglove(const std::string& source, OpenPo
 Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime deadline) {
   const auto options = read_options(spec);
   if (!options) return options.error();
-  if (spec.target.empty()) {
-    return Error{Errc::usage, spec.text + ": name the port, e.g. serial:/dev/ttyUSB0"};
-  }
+  if (auto named = require_port(spec, "serial:/dev/ttyUSB0"); !named) return named.error();
   const int baud = options->baud.value_or(usual_bauds.front());
   return open_cyberglove(spec.text, follow_port(spec.target, baud), *options, deadline);
 }

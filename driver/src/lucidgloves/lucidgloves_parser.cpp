@@ -1,9 +1,9 @@
 #include "lucidgloves/lucidgloves_parser.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <system_error>
 #include <utility>
+
+#include "spec/number_in.hpp"
 
 namespace nendo::driver::lucidgloves {
 namespace {
@@ -59,11 +59,9 @@ bool take_number(std::string_view& text, Number& number) noexcept {
   if (negative) text.remove_prefix(1);
   const auto digits = take_while(text, is_digit);
   if (digits.empty()) return !negative;
-  std::uint32_t value = 0;
-  const auto [stopped, error] =
-      std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  number = negative ? -std::int64_t{value} : std::int64_t{value};
-  return error == std::errc{};
+  const auto value = number_in<std::uint32_t>(digits);
+  if (value) number = negative ? -std::int64_t{*value} : std::int64_t{*value};
+  return value.has_value();
 }
 
 class LineDecoder {

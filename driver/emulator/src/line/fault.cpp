@@ -111,10 +111,6 @@ std::optional<Fault> timed(const Row& row, std::string_view text) {
   return fault;
 }
 
-} // namespace
-
-namespace {
-
 /// Reads SENSOR[:COUNT].
 std::optional<Incident> stuck_sensor(std::string_view text) {
   const std::size_t colon = text.find(':');
