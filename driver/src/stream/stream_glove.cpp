@@ -4,13 +4,13 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <condition_variable>
 #include <mutex>
 #include <stop_token>
-#include <thread>
 #include <utility>
 
 #include <spdlog/spdlog.h>
+
+#include <nendo/driver/reader_thread.hpp>
 
 namespace nendo::driver {
 namespace {
@@ -70,7 +70,7 @@ public:
 
   const GloveInfo& info() const noexcept override { return info_; }
   Result<void> start(SampleRing& ring) override {
-    if (reader_.joinable()) return Error{Errc::failed, info_.source + " is streaming already"};
+    if (reader_.is_running()) return Error{Errc::failed, info_.source + " is streaming already"};
     if (!transport_) return Error{Errc::no_device, info_.source + " went away; open it again"};
     const ReplyDeadline limit{HostClock::now() + start_budget, {}};
     if (auto ready = protocol_->start_stream(*transport_, info_.source, limit); !ready)
@@ -84,15 +84,10 @@ public:
     outage_ = unanswered_ = caught_up_ = false;
     window_begin_ = HostClock::now();
     window_begins_with_ = 0;
-    reader_ = std::jthread([this](const std::stop_token& token) { run(token); });
-    return {};
+    return reader_.start(info_.source, [this](const std::stop_token& token) { run(token); });
   }
 
-  void stop() noexcept override {
-    if (!reader_.joinable()) return;
-    reader_.request_stop();
-    reader_.join();
-  }
+  void stop() noexcept override { reader_.stop(); }
 
   GloveStats stats() const noexcept override { return stats_.load(); }
   void set_feedback(const Feedback& feedback) noexcept override {
@@ -225,9 +220,7 @@ private:
     if (!std::exchange(outage_, true)) {
       spdlog::warn("device: {} went away; looking for it every 0.5 s", info_.source);
     }
-    while (!token.stop_requested()) {
-      wait(token, retry_interval);
-      if (token.stop_requested()) return;
+    while (reader_.wait_until(token, HostClock::now() + retry_interval)) {
       auto transport = open_port_();
       if (!transport) continue;
       transport_ = *std::move(transport);
@@ -264,14 +257,6 @@ private:
     return bool(streams);
   }
 
-  /// Sleeps, but wakes up when it is to stop.
-  void wait(const std::stop_token& token, std::chrono::milliseconds time) {
-    std::mutex mutex;
-    std::condition_variable_any woken;
-    std::unique_lock lock(mutex);
-    woken.wait_for(lock, token, time, [] { return false; });
-  }
-
   const GloveInfo info_;
   const OpenPort open_port_;
   SharedStats stats_;
@@ -298,7 +283,7 @@ private:
   bool outage_ = false;     ///< no record since the stream broke off
   bool unanswered_ = false; ///< the last question who is there had no good answer
 
-  std::jthread reader_; // last: joined before what it uses is gone
+  ReaderThread reader_; // last: joined before what it uses is gone
 };
 
 } // namespace

@@ -23,7 +23,7 @@ public:
   /// glove in messages. Errors: failed (already started, or no thread).
   Result<void> start(const std::string& source,
                      std::function<void(const std::stop_token& stop)> read) {
-    if (thread_.joinable()) return Error{Errc::failed, source + ": start() was called twice"};
+    if (is_running()) return Error{Errc::failed, source + ": start() was called twice"};
     try {
       thread_ = std::jthread(std::move(read));
     } catch (const std::system_error& error) {
@@ -32,6 +32,7 @@ public:
     return {};
   }
 
+  bool is_running() const noexcept { return thread_.joinable(); } ///< true until stop()
   /// Requests a stop and joins the thread. Idempotent.
   void stop() noexcept {
     thread_.request_stop();
