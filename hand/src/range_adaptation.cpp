@@ -88,10 +88,7 @@ RangeAdaptation::RangeAdaptation(CountScale counts, const LearnedRanges& learned
     const LearnedRanges::Sensor& sensor = learned.sensors[slot];
     Learner& learner = learners_[slot];
     if (!learner.can_have_learned(sensor, counts)) continue;
-    learner.low = sensor.low_counts;
-    learner.high = sensor.high_counts;
-    learner.bottoms = sensor.bottoms;
-    learner.tops = sensor.tops;
+    learner.restore(sensor);
     calibration_.sensors[slot] = sensor.line;
   }
 }
@@ -117,8 +114,7 @@ std::optional<LearnedRanges> RangeAdaptation::learned() const noexcept {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const Learner& learner = learners_[slot];
     if (learner.usual_span == 0.0) continue;
-    learned.sensors[slot] = {learner.low, learner.high, learner.bottoms, learner.tops,
-                             calibration_.sensors[slot]};
+    learned.sensors[slot] = learner.learned(calibration_.sensors[slot]);
   }
   return learned;
 }
@@ -170,11 +166,8 @@ void RangeAdaptation::push(const GloveSample& sample) noexcept {
 
 SensorRanges RangeAdaptation::ranges() const noexcept {
   SensorRanges ranges;
-  for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
-    const Learner& learner = learners_[slot];
-    ranges[slot] = {learner.low, learner.high,
-                    std::uint64_t{learner.bottoms} + std::uint64_t{learner.tops}};
-  }
+  for (std::size_t slot = 0; slot < sensor_slots; ++slot)
+    ranges[slot] = learners_[slot].range();
   return ranges;
 }
 
@@ -208,10 +201,7 @@ SlipAdaptation::SlipAdaptation(const Calibration& made, const CalibratedRange& e
                         sensor.low_counts <= sensor.high_counts &&
                         std::abs(slipped) <= max_slip * span;
     if (!can_be) continue;
-    learners_[slot].low = sensor.low_counts;
-    learners_[slot].high = sensor.high_counts;
-    learners_[slot].bottoms = sensor.bottoms;
-    learners_[slot].tops = sensor.tops;
+    learners_[slot].restore(sensor);
     calibration_.sensors[slot].offset_counts = sensor.line.offset_counts;
   }
 }
@@ -230,7 +220,7 @@ void SlipAdaptation::push(const GloveSample& sample) noexcept {
   const double interval_s = interval_.push(sample);
   for (const Sensor sensor : followed_) {
     const std::size_t slot = index_of(sensor);
-    Learner& learner = learners_[slot];
+    SwingEnds& learner = learners_[slot];
     if (!own || !sample.present.has(sensor)) {
       learner.swings.reset();
       continue;
@@ -262,21 +252,15 @@ SensorAngles SlipAdaptation::slips_counts() const noexcept {
 
 SensorRanges SlipAdaptation::ranges() const noexcept {
   SensorRanges ranges;
-  for (const Sensor sensor : followed_) {
-    const Learner& learner = learners_[index_of(sensor)];
-    ranges[index_of(sensor)] = {learner.low, learner.high,
-                                std::uint64_t{learner.bottoms} + std::uint64_t{learner.tops}};
-  }
+  for (const Sensor sensor : followed_)
+    ranges[index_of(sensor)] = learners_[index_of(sensor)].range();
   return ranges;
 }
 
 LearnedRanges SlipAdaptation::learned() const noexcept {
   LearnedRanges learned{ends_.side, {}};
-  for (const Sensor sensor : followed_) {
-    const Learner& learner = learners_[index_of(sensor)];
-    learned.sensors[index_of(sensor)] = {learner.low, learner.high, learner.bottoms, learner.tops,
-                                         calibration_[sensor]};
-  }
+  for (const Sensor sensor : followed_)
+    learned.sensors[index_of(sensor)] = learners_[index_of(sensor)].learned(calibration_[sensor]);
   return learned;
 }
 

@@ -67,6 +67,24 @@ private:
   bool begun_ = false; ///< last_ is valid
 };
 
+/// The ends of one sensor's swings, in counts, and the number of ends used.
+struct SwingEnds {
+  SwingFinder swings;
+  double low = 0.0, high = 0.0;
+  std::uint32_t bottoms = 0, tops = 0;
+
+  SensorRange range() const noexcept { return {low, high, std::uint64_t{bottoms} + tops}; }
+  LearnedRanges::Sensor learned(const SensorCalibration& line) const noexcept {
+    return {low, high, bottoms, tops, line};
+  }
+  void restore(const LearnedRanges::Sensor& sensor) noexcept {
+    low = sensor.low_counts;
+    high = sensor.high_counts;
+    bottoms = sensor.bottoms;
+    tops = sensor.tops;
+  }
+};
+
 class NENDO_API RangeAdaptation {
 public:
   /// Learning changes the angle of a count at most this fast.
@@ -103,12 +121,9 @@ public:
   std::optional<LearnedRanges> learned() const noexcept;
 
 private:
-  struct Learner {
-    SwingFinder swings;
-    SensorCalibration usual;             ///< line through the joint's usual range at counts 0 and 1
-    double usual_span = 0.0;             ///< in the default's counts; 0: nothing can be learned
-    double low = 0.0, high = 0.0;        ///< the bounds, counts
-    std::uint32_t bottoms = 0, tops = 0; ///< number of ends used
+  struct Learner : SwingEnds {
+    SensorCalibration usual; ///< line through the joint's usual range at counts 0 and 1
+    double usual_span = 0.0; ///< in the default's counts; 0: nothing can be learned
 
     void learn(const SwingFinder::End& end) noexcept;
     bool can_have_learned(const LearnedRanges::Sensor& sensor, CountScale counts) const noexcept;
@@ -165,18 +180,13 @@ public:
   LearnedRanges learned() const noexcept;
 
 private:
-  struct Learner {
-    SwingFinder swings;
-    double low = 0.0, high = 0.0; ///< ends of swings, counts
-    std::uint32_t bottoms = 0, tops = 0;
-  };
   double slip_counts(std::size_t slot) const noexcept;
 
   Calibration made_, calibration_;
   CalibratedRange ends_;
   CountScale counts_;
   SensorMask followed_;
-  std::array<Learner, sensor_slots> learners_{};
+  std::array<SwingEnds, sensor_slots> learners_{};
   SampleInterval interval_;
 };
 
