@@ -43,24 +43,27 @@ auto say(std::string_view sent, std::string_view reply, Call&& call) {
   return result;
 }
 
+template <class T>
+Reply<T> say(std::string_view sent, std::string_view reply, Query<T> query) {
+  return say(sent, reply, [&](Commands& c) { return c.ask(query); });
+}
+
 } // namespace
 
 TEST_SUITE("cyberglove_commands") {
   TEST_CASE("queries and their replies are those of the reference") {
-    CHECK(say("?S", "?S\x16\0"sv, [](Commands& c) { return c.sensor_count(); }).value == 22);
-    CHECK(say("?K", "?K\x7F\xFF\x7F\0"sv, [](Commands& c) { return c.hardware_mask(); }).value ==
-          sensors_22);
-    CHECK(say("?M", "?M\x3F\xBB\x7B\0"sv, [](Commands& c) { return c.software_mask(); }).value ==
-          sensors_18);
-    CHECK(say("?N", "?N\x12\0"sv, [](Commands& c) { return c.value_count(); }).value == 18);
-    CHECK(say("?R", "?R\x01\0"sv, [](Commands& c) { return c.side(); }).value == Side::right);
-    CHECK(say("?R", "?R\0\0"sv, [](Commands& c) { return c.side(); }).value == Side::left);
-    CHECK(say("?B", "?B\x10\0"sv, [](Commands& c) { return c.baud_register(); }).value == 0x10);
+    CHECK(say("?S", "?S\x16\0"sv, ask_sensor_count).value == 22);
+    CHECK(say("?K", "?K\x7F\xFF\x7F\0"sv, ask_hardware_mask).value == sensors_22);
+    CHECK(say("?M", "?M\x3F\xBB\x7B\0"sv, ask_software_mask).value == sensors_18);
+    CHECK(say("?N", "?N\x12\0"sv, ask_value_count).value == 18);
+    CHECK(say("?R", "?R\x01\0"sv, ask_side).value == Side::right);
+    CHECK(say("?R", "?R\0\0"sv, ask_side).value == Side::left);
+    CHECK(say("?B", "?B\x10\0"sv, ask_baud).value == 0x10);
 
-    const auto state = say("?G", "?G\x01\0"sv, [](Commands& c) { return c.state(); });
+    const auto state = say("?G", "?G\x01\0"sv, ask_state);
     CHECK(state.value.initialised);
     CHECK_FALSE(state.value.connected);
-    CHECK(say("?G", "?G\x02\0"sv, [](Commands& c) { return c.state(); }).value.connected);
+    CHECK(say("?G", "?G\x02\0"sv, ask_state).value.connected);
 
     const auto off =
         say("?W", "?W\0\0"sv, [](Commands& c) { return c.get(Setting::wrist_switch); });
@@ -72,14 +75,13 @@ TEST_SUITE("cyberglove_commands") {
   }
 
   TEST_CASE("versions, calibrations and vibrations may hold NUL anywhere") {
-    const auto version = say("?V", "?V\x02\0\0\x01\0"sv, [](Commands& c) { return c.firmware(); });
+    const auto version = say("?V", "?V\x02\0\0\x01\0"sv, ask_firmware);
     CHECK(version.value == std::array<std::uint8_t, 4>{2, 0, 0, 1});
     CHECK(say("?v", "?v 2.1\r\n\0"sv, [](Commands& c) { return c.firmware_text(); }).value ==
           " 2.1\r\n");
     CHECK(say("?i", "?i \r\nCG\r\n\0"sv, [](Commands& c) { return c.information(); }).value ==
           " \r\nCG\r\n");
-    const auto vibration =
-        say("?A", "?A\0\x01\0\x03\0\xFF\0"sv, [](Commands& c) { return c.vibration(); });
+    const auto vibration = say("?A", "?A\0\x01\0\x03\0\xFF\0"sv, ask_vibration);
     CHECK(vibration.value == Vibration{0, 1, 0, 3, 0, 255});
     const auto calibration =
         say("?C", "?C\0\x64\x0A\0\0"sv, [](Commands& c) { return c.hardware_calibration(2); });
@@ -130,10 +132,8 @@ TEST_SUITE("cyberglove_commands") {
     CHECK(say("t 1280 1\r\x03", "es\0"sv, [](Commands& c) {
             return c.set_period({1280, 1});
           }).answer == Answer::bad_rate);
-    CHECK(say("?S", "?S\x16", [](Commands& c) { return c.sensor_count(); }).answer ==
-          Answer::nonsense);
-    CHECK(say("?K", "e?\0"sv, [](Commands& c) { return c.hardware_mask(); }).answer ==
-          Answer::unknown);
+    CHECK(say("?S", "?S\x16", ask_sensor_count).answer == Answer::nonsense);
+    CHECK(say("?K", "e?\0"sv, ask_hardware_mask).answer == Answer::unknown);
   }
 
   TEST_CASE("a cancelled command says nothing and does not wait") {
@@ -176,10 +176,10 @@ TEST_SUITE("cyberglove_commands") {
   TEST_CASE("parameter flags are the reference's bits") {
     // Power-up of a working right glove: filter, switch drives light, right hand, valid, plugged
     // in.
-    const auto reply = say("?P", "?P\x81\xD8\0\0"sv, [](Commands& c) { return c.parameters(); });
+    const auto reply = say("?P", "?P\x81\xD8\0\0"sv, ask_parameters);
     REQUIRE(reply);
     CHECK(reply.value == (0xC081U | 1U << flag_filter | 1U << flag_switch_drives_light));
-    const auto touch = say("?P", "?P\x87\x27\x03\0"sv, [](Commands& c) { return c.parameters(); });
+    const auto touch = say("?P", "?P\x87\x27\x03\0"sv, ask_parameters);
     CHECK(touch.value ==
           (0x0381U | 1U << flag_cybertouch | 1U << flag_quantised | 1U << flag_wrist_switch |
            1U << flag_light | 1U << flag_status_byte | 1U << flag_time_stamp));

@@ -34,7 +34,7 @@ Exchange ask_mask(std::string_view reply) {
   CannedTransport transport(reply);
   Dialogue dialogue(transport, HostClock::now() + max_wait);
   Exchange exchange{};
-  exchange.answer = dialogue.ask(ask_hardware_mask, exchange.data, 1s);
+  exchange.answer = dialogue.ask(ask_hardware_mask.letter, exchange.data, 1s);
   exchange.written = transport.written;
   return exchange;
 }
@@ -144,7 +144,7 @@ TEST_SUITE("cyberglove_dialogue") {
     transport.gone = true;
     Dialogue lost(transport, HostClock::now() + 10s);
     std::array<std::byte, 1> data{};
-    CHECK(lost.ask(ask_state, data, 10s) == Answer::gone);
+    CHECK(lost.ask(ask_state.letter, data, 10s) == Answer::gone);
     CHECK(lost.command(data, "D", 10s) == Answer::gone);
     CHECK(lost.pause_stream(10s) == Answer::gone);
     CHECK(lost.stop_stream() == Answer::gone);
@@ -154,7 +154,7 @@ TEST_SUITE("cyberglove_dialogue") {
     source.request_stop();
     Dialogue cancelled(transport, HostClock::now() + 10s, source.get_token());
     const HostTime start = HostClock::now();
-    CHECK(cancelled.ask(ask_state, data, 10s) == Answer::silent);
+    CHECK(cancelled.ask(ask_state.letter, data, 10s) == Answer::silent);
     CHECK(cancelled.pause_stream(10s) == Answer::silent);
     CHECK(HostClock::now() - start < 1s);
   }

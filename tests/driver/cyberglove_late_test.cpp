@@ -133,7 +133,7 @@ TEST_SUITE("cyberglove_late") {
     CHECK(dialogue.start_stream("S") == Answer::good);
     std::byte data{};
     const HostTime start = HostClock::now();
-    CHECK(dialogue.ask(ask_sensor_count, std::span(&data, 1), 200ms) == Answer::nonsense);
+    CHECK(dialogue.ask(ask_sensor_count.letter, std::span(&data, 1), 200ms) == Answer::nonsense);
     CHECK(HostClock::now() - start < 500ms);
   }
 
@@ -141,15 +141,15 @@ TEST_SUITE("cyberglove_late") {
     LateTransport transport(Script(), "?", 300ms);
     std::byte data{};
     Dialogue first(transport, HostClock::now() + 4s);
-    CHECK(first.ask(ask_sensor_count, std::span(&data, 1), 100ms) == Answer::silent);
-    CHECK(first.ask(ask_state, std::span(&data, 1), 500ms) == Answer::good);
+    CHECK(first.ask(ask_sensor_count.letter, std::span(&data, 1), 100ms) == Answer::silent);
+    CHECK(first.ask(ask_state.letter, std::span(&data, 1), 500ms) == Answer::good);
     CHECK(first.slowest_answer() >= 300ms);
-    CHECK(first.ask(ask_sensor_count, std::span(&data, 1), 100ms) == Answer::good);
+    CHECK(first.ask(ask_sensor_count.letter, std::span(&data, 1), 100ms) == Answer::good);
     Dialogue second(transport, HostClock::now() + 4s);
     second.expect_late_answers(first.slowest_answer());
-    CHECK(second.ask(ask_sensor_count, std::span(&data, 1), 100ms) == Answer::good);
+    CHECK(second.ask(ask_sensor_count.letter, std::span(&data, 1), 100ms) == Answer::good);
     Dialogue third(transport, HostClock::now() + 4s);
-    CHECK(third.ask(ask_sensor_count, std::span(&data, 1), 100ms) == Answer::silent);
+    CHECK(third.ask(ask_sensor_count.letter, std::span(&data, 1), 100ms) == Answer::silent);
   }
 
   TEST_CASE("a glove that is late with each answer opens and streams") {
@@ -192,7 +192,7 @@ TEST_SUITE("cyberglove_late") {
     transport.host_sleeps = 250ms;
     Dialogue dialogue(transport, HostClock::now() + 4s);
     std::byte data{};
-    CHECK(dialogue.ask(ask_sensor_count, std::span(&data, 1), 100ms) == Answer::good);
+    CHECK(dialogue.ask(ask_sensor_count.letter, std::span(&data, 1), 100ms) == Answer::good);
     CHECK(std::to_integer<int>(data) == 22);
   }
 }

@@ -52,27 +52,25 @@ std::optional<Answer> check_confirmation(const Tail& tail, std::string_view echo
   return std::nullopt;
 }
 
-template <class T, std::size_t size, class Decode>
-Reply<T> decoded(const Reply<std::array<std::byte, size>>& reply, Decode&& decode) noexcept {
-  ByteReader reader(reply.value);
-  return {reply.answer, decode(reader)};
-}
+/// Decodes the data of replies.
+struct Decoder {
+  ByteReader bytes;
 
-std::uint8_t one_byte(ByteReader& reader) noexcept {
-  return reader.u8();
-}
-
-SensorMask mask_of(ByteReader& reader) noexcept {
-  return {reader.u24_le()};
-}
-
-template <std::size_t size>
-std::array<std::uint8_t, size> all_bytes(ByteReader& reader) noexcept {
-  std::array<std::uint8_t, size> bytes{};
-  for (std::uint8_t& byte : bytes)
-    byte = reader.u8();
-  return bytes;
-}
+  void operator()(std::uint8_t& value) noexcept { value = bytes.u8(); }
+  void operator()(bool& value) noexcept { value = bytes.u8() != 0; }
+  void operator()(Side& value) noexcept { value = bytes.u8() == 0 ? Side::left : Side::right; }
+  void operator()(std::uint32_t& value) noexcept { value = bytes.u24_le(); }
+  void operator()(SensorMask& value) noexcept { value.bits = bytes.u24_le(); }
+  void operator()(GloveState& value) noexcept {
+    const std::uint8_t bits = bytes.u8();
+    value = {(bits & state_initialised) != 0, (bits & state_connected) != 0};
+  }
+  template <class Byte, std::size_t size>
+  void operator()(std::array<Byte, size>& value) noexcept {
+    for (Byte& byte : value)
+      byte = Byte{bytes.u8()};
+  }
+};
 
 } // namespace
 
@@ -204,10 +202,10 @@ Answer Dialogue::pause_stream(std::chrono::milliseconds timeout) noexcept {
   }
 }
 
-Answer Dialogue::ask(const Query& query, std::span<std::byte> data,
+Answer Dialogue::ask(char letter, std::span<std::byte> data,
                      std::chrono::milliseconds timeout) noexcept {
   HostTime until = answered_by(timeout);
-  const std::array head{'?', query.letter};
+  const std::array head{'?', letter};
   if (const Answer sent = send(std::as_bytes(std::span(head))); sent != Answer::good) return sent;
   Answer answer = find_reply({head.data(), head.size()}, until);
   for (std::size_t k = 0; k < data.size() && answer == Answer::good; ++k) {
@@ -254,14 +252,6 @@ Answer Dialogue::start_stream(std::string_view command) noexcept {
   return send(std::as_bytes(std::span(command)));
 }
 
-template <std::size_t size>
-Reply<std::array<std::byte, size>> Commands::ask(const Query& query) noexcept {
-  assert(query.data_bytes == size);
-  Reply<std::array<std::byte, size>> reply;
-  reply.answer = dialogue_.ask(query, reply.value, timeout_);
-  return reply;
-}
-
 Answer Commands::set(std::string_view head, std::span<const std::uint8_t> arguments) noexcept {
   std::array<std::byte, 16> message{}; // the longest sets a period: t, two words and CR
   assert(head.size() + arguments.size() <= message.size());
@@ -293,43 +283,32 @@ Reply<std::string> Commands::firmware_text() {
   return reply;
 }
 
-Reply<std::array<std::uint8_t, 4>> Commands::firmware() noexcept {
-  return decoded<std::array<std::uint8_t, 4>>(ask<4>(ask_firmware), all_bytes<4>);
+template <class T>
+Reply<T> Commands::ask(Query<T> query) noexcept {
+  std::array<std::byte, sizeof(Vibration)> data{}; // the longest
+  Reply<T> reply;
+  reply.answer = dialogue_.ask(query.letter, std::span(data).first(query.data_bytes), timeout_);
+  Decoder{ByteReader(data)}(reply.value);
+  return reply;
 }
 
-Reply<GloveState> Commands::state() noexcept {
-  return decoded<GloveState>(ask<1>(ask_state), [](ByteReader& reader) {
-    const std::uint8_t bits = reader.u8();
-    return GloveState{(bits & state_initialised) != 0, (bits & state_connected) != 0};
-  });
-}
-
-Reply<std::uint8_t> Commands::sensor_count() noexcept {
-  return decoded<std::uint8_t>(ask<1>(ask_sensor_count), one_byte);
-}
-
-Reply<SensorMask> Commands::hardware_mask() noexcept {
-  return decoded<SensorMask>(ask<3>(ask_hardware_mask), mask_of);
-}
-
-Reply<Side> Commands::side() noexcept {
-  return decoded<Side>(ask<1>(ask_right_hand), [](ByteReader& reader) {
-    return reader.u8() == 0 ? Side::left : Side::right;
-  });
-}
+template Reply<std::uint8_t> Commands::ask(Query<std::uint8_t>) noexcept;
+template Reply<Side> Commands::ask(Query<Side>) noexcept;
+template Reply<std::uint32_t> Commands::ask(Query<std::uint32_t>) noexcept;
+template Reply<SensorMask> Commands::ask(Query<SensorMask>) noexcept;
+template Reply<GloveState> Commands::ask(Query<GloveState>) noexcept;
+template Reply<std::array<std::uint8_t, 4>>
+    Commands::ask(Query<std::array<std::uint8_t, 4>>) noexcept;
+template Reply<std::array<std::byte, 4>> Commands::ask(Query<std::array<std::byte, 4>>) noexcept;
+template Reply<Vibration> Commands::ask(Query<Vibration>) noexcept;
 
 Reply<bool> Commands::get(Setting setting) noexcept {
-  return decoded<bool>(ask<1>({static_cast<char>(setting), 1}),
-                       [](ByteReader& reader) { return reader.u8() != 0; });
+  return ask(Query<bool>{static_cast<char>(setting), 1});
 }
 
 Answer Commands::set(Setting setting, bool on) noexcept {
   const auto letter = static_cast<char>(setting);
   return set({&letter, 1}, on ? 1 : 0);
-}
-
-Reply<SensorMask> Commands::software_mask() noexcept {
-  return decoded<SensorMask>(ask<3>(ask_software_mask), mask_of);
 }
 
 Answer Commands::set_software_mask(SensorMask mask) noexcept {
@@ -339,25 +318,12 @@ Answer Commands::set_software_mask(SensorMask mask) noexcept {
                         static_cast<std::uint8_t>(mask.bits >> 16U & 0xFFU)});
 }
 
-Reply<std::uint8_t> Commands::value_count() noexcept {
-  return decoded<std::uint8_t>(ask<1>(ask_value_count), one_byte);
-}
-
 Answer Commands::set_value_count(std::uint8_t count) noexcept {
   return set(cyberglove::set_value_count, count);
 }
 
-Reply<std::uint32_t> Commands::parameters() noexcept {
-  return decoded<std::uint32_t>(ask<3>(ask_parameters),
-                                [](ByteReader& reader) { return reader.u24_le(); });
-}
-
 Answer Commands::set_sync(bool on) noexcept {
   return set(cyberglove::set_sync, on ? 1 : 0);
-}
-
-Reply<std::array<std::byte, 4>> Commands::period_bytes() noexcept {
-  return ask<4>(ask_period);
 }
 
 Reply<std::optional<WordOrder>> Commands::set_period(Period period) noexcept {
@@ -374,7 +340,7 @@ Reply<std::optional<WordOrder>> Commands::set_period(Period period) noexcept {
   const Answer done = set(set_period_text, std::span(bytes).first(size));
   // An unreadable confirmation is no confirmation, but the query shows what the unit did.
   if (done != Answer::good && done != Answer::nonsense) return {done, std::nullopt};
-  const auto reply = period_bytes();
+  const auto reply = ask(ask_period);
   if (reply.answer == Answer::unknown) return {done, std::nullopt};
   if (!reply) return {reply.answer, std::nullopt};
   const auto order = order_of(reply.value, period);
@@ -386,7 +352,7 @@ Reply<HardwareCalibration> Commands::hardware_calibration(std::size_t sensors) n
   std::array<std::byte, 2 * sensor_slots> data{};
   const auto used = std::span(data).first(2 * sensors);
   Reply<HardwareCalibration> reply;
-  reply.answer = dialogue_.ask({ask_calibration, used.size()}, used, timeout_);
+  reply.answer = dialogue_.ask(ask_calibration, used, timeout_);
   reply.value.sensors = sensors;
   ByteReader reader(used);
   for (std::size_t k = 0; k < sensors; ++k)
@@ -394,14 +360,6 @@ Reply<HardwareCalibration> Commands::hardware_calibration(std::size_t sensors) n
   for (std::size_t k = 0; k < sensors; ++k)
     reply.value.gain[k] = reader.u8();
   return reply;
-}
-
-Reply<std::uint8_t> Commands::baud_register() noexcept {
-  return decoded<std::uint8_t>(ask<1>(ask_baud), one_byte);
-}
-
-Reply<Vibration> Commands::vibration() noexcept {
-  return decoded<Vibration>(ask<6>(ask_vibration), all_bytes<6>);
 }
 
 Answer Commands::set_vibration(const Vibration& strength) noexcept {

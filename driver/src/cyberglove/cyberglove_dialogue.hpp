@@ -1,6 +1,6 @@
 #pragma once
 // Commands and queries to the glove's interface unit while it does not stream: Dialogue sends and
-// receives bytes, and Commands has a typed function for each command that the driver uses;
+// receives bytes, and Commands makes the driver's commands of them and decodes the replies;
 // cyberglove_protocol.hpp has the bytes. Replies may contain NUL and are therefore read by length.
 // Bytes before a reply are skipped, since the unit may still be answering another program.
 
@@ -75,10 +75,8 @@ public:
   Answer stop_stream(std::chrono::milliseconds max_time = max_drain) noexcept;
   /// Ends a stream and reads up to the answer. It is quicker, but needs a line without noise.
   Answer pause_stream(std::chrono::milliseconds timeout) noexcept;
-  /// Asks for data. `data` must have the size that the query states; it is filled if the answer is
-  /// good.
-  Answer ask(const Query& query, std::span<std::byte> data,
-             std::chrono::milliseconds timeout) noexcept;
+  /// Asks for data as long as `data`, which are filled if the answer is good.
+  Answer ask(char letter, std::span<std::byte> data, std::chrono::milliseconds timeout) noexcept;
   /// Asks for text, which is cut at 2048 characters.
   Answer ask_text(char letter, std::string& text, std::chrono::milliseconds timeout);
   /// Sends a command that is confirmed by `echo` and NUL, perhaps with a byte between them. `echo`
@@ -122,11 +120,6 @@ struct Reply {
   explicit operator bool() const noexcept { return answer == Answer::good; }
 };
 
-struct GloveState {
-  bool initialised = false;
-  bool connected = false; ///< a glove is plugged into the unit
-};
-
 /// The offsets and gains by which the unit quantises values. The first `sensors` of each are valid.
 struct HardwareCalibration {
   std::size_t sensors = 0;
@@ -134,42 +127,30 @@ struct HardwareCalibration {
   std::array<std::uint8_t, sensor_slots> gain{};
 };
 
-using Vibration = std::array<std::uint8_t, 6>; ///< thumb to little finger, palm
-
 /// Each call waits for its reply, at most `timeout` unless stated otherwise.
 class Commands {
 public:
   explicit Commands(Dialogue& dialogue, std::chrono::milliseconds timeout) noexcept
       : dialogue_(dialogue), timeout_(timeout) {}
 
-  // Queries about the glove and its unit.
   Reply<std::string> information(); ///< several lines; up to 1 s
   Reply<std::string> firmware_text();
-  Reply<std::array<std::uint8_t, 4>> firmware() noexcept;
-  Reply<GloveState> state() noexcept;
-  Reply<std::uint8_t> sensor_count() noexcept;
-  Reply<SensorMask> hardware_mask() noexcept;
-  Reply<Side> side() noexcept;
+  Reply<HardwareCalibration> hardware_calibration(std::size_t sensors) noexcept;
+  template <class T>
+  Reply<T> ask(Query<T> query) noexcept;
 
   // Settings, which the unit forgets when it is switched off.
   Reply<bool> get(Setting setting) noexcept;
   Answer set(Setting setting, bool on) noexcept;
-  Reply<SensorMask> software_mask() noexcept;
   Answer set_software_mask(SensorMask mask) noexcept;
-  Reply<std::uint8_t> value_count() noexcept;
   Answer set_value_count(std::uint8_t count) noexcept;
-  Reply<std::uint32_t> parameters() noexcept; ///< flags, see cyberglove_protocol.hpp
   /// Makes records begin with Y and come at the pulses of the sync input. Pulses that are too fast
   /// give bad_sync_rate.
   Answer set_sync(bool on) noexcept;
-  Reply<std::array<std::byte, 4>> period_bytes() noexcept; ///< see decode_period()
   /// Sets the period in text, which has no byte order, and then asks for it in bytes. The value is
   /// the byte order that the reply shows, if the unit knows the query. bad_rate and bad_number mean
   /// that the unit refuses, and other_value that it set another period.
   Reply<std::optional<WordOrder>> set_period(Period period) noexcept;
-  Reply<HardwareCalibration> hardware_calibration(std::size_t sensors) noexcept;
-  Reply<std::uint8_t> baud_register() noexcept; ///< see baud_of_register()
-  Reply<Vibration> vibration() noexcept;
   Answer set_vibration(const Vibration& strength) noexcept;
   Answer reread_glove() noexcept; ///< reads the memory of a glove that was swapped
 
@@ -178,8 +159,6 @@ public:
   Answer set_frame_rate(std::uint8_t thirties) noexcept; ///< in steps of 30 Hz
 
 private:
-  template <std::size_t size>
-  Reply<std::array<std::byte, size>> ask(const Query& query) noexcept;
   Answer set(std::string_view head, std::span<const std::uint8_t> arguments = {}) noexcept;
   Answer set(std::string_view head, std::uint8_t argument) noexcept;
 

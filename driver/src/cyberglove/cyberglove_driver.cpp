@@ -67,10 +67,10 @@ public:
     dialogue.prolong(HostClock::now() + answers_at_start * slowest_answer_);
     dialogue.stop_stream();
     Commands commands(dialogue, state_answer);
-    Reply<GloveState> state = commands.state();
+    Reply<GloveState> state = commands.ask(ask_state);
     // Noise on the line, or a unit or a host that was held up for a moment.
     for (int tries = 1; tries < tries_at_start && !state && state.answer != Answer::gone; ++tries)
-      state = commands.state();
+      state = commands.ask(ask_state);
     const auto ready = check_state(source, state, "?G");
     const Answer answer = ready ? begin(dialogue) : Answer::silent;
     parser_.count_discarded(dialogue.bytes_received());

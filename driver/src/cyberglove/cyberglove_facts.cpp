@@ -78,7 +78,7 @@ public:
     identity_.model += ", " + std::to_string(identity_.channels.count) + " sensors";
     if (const auto text = inquire_([this] { return commands_.firmware_text(); })) {
       add("firmware", one_line(text.value));
-    } else if (const auto bytes = inquire_([this] { return commands_.firmware(); })) {
+    } else if (const auto bytes = inquire_([this] { return commands_.ask(ask_firmware); })) {
       // No source says what the four bytes mean.
       const auto& [a, b, c, d] = bytes.value;
       add("firmware", fmt::format("{}.{}.{}.{}", a, b, c, d));
@@ -103,7 +103,7 @@ public:
     };
     Abilities& abilities = identity_.abilities;
     abilities.wrist_switch = identity_.shape.status;
-    const auto flags = inquire_([this] { return commands_.parameters(); });
+    const auto flags = inquire_([this] { return commands_.ask(ask_parameters); });
     const auto flag = [&](unsigned bit) { return (flags.value >> bit & 1U) != 0; };
     for (const Known& known : settings) {
       const Reply<bool> reply = flags ? Reply<bool>{Answer::good, flag(known.flag)}
@@ -121,12 +121,12 @@ public:
 
   void ask_vibration() {
     if (!identity_.abilities.vibration) return;
-    if (const auto reply = inquire_([this] { return commands_.vibration(); }))
+    if (const auto reply = inquire_([this] { return commands_.ask(cyberglove::ask_vibration); }))
       add("vibration", fmt::format("{}", fmt::join(reply.value, " ")));
   }
 
   void ask_baud_register() {
-    const auto reply = inquire_([this] { return commands_.baud_register(); });
+    const auto reply = inquire_([this] { return commands_.ask(ask_baud); });
     if (!reply) return;
     const auto baud = baud_of_register(reply.value);
     add("baud_register", baud ? fmt::format("0x{:02X} ({} baud)", reply.value, *baud)

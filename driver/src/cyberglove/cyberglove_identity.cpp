@@ -1,6 +1,7 @@
 #include "cyberglove/cyberglove_identity.hpp"
 
 #include <bit>
+#include <type_traits>
 #include <utility>
 
 #include <spdlog/fmt/fmt.h>
@@ -83,10 +84,10 @@ bool is_of_unit(Answer answer) noexcept {
 
 /// `last`: there is no other rate to try, so that a slow unit gets another chance.
 Reply<GloveState> ask_state_twice(Commands& commands, bool last) noexcept {
-  Reply<GloveState> reply = commands.state();
+  Reply<GloveState> reply = commands.ask(ask_state);
   const bool hopeless = reply.answer == Answer::gone || (reply.answer == Answer::silent && !last);
   // An e? may still be the answer to the previous program.
-  return is_of_unit(reply.answer) || hopeless ? reply : commands.state();
+  return is_of_unit(reply.answer) || hopeless ? reply : commands.ask(ask_state);
 }
 
 std::string list_of(const std::vector<int>& bauds) {
@@ -137,22 +138,18 @@ private:
   }
 
   Result<void> ask_channels() {
-    using Count = std::uint8_t;
-    const auto count = needed<Count>("?S", {}, [&] { return commands_.sensor_count(); });
+    const auto count = needed(ask_sensor_count, {});
     if (!count) return count.error();
     if (*count == 0 || *count > sensor_slots) {
       return no_device(source_, "says that it has " + std::to_string(*count) +
                                     " sensors; no CyberGlove has");
     }
-    const auto hardware = needed<SensorMask>("?K", *count == 18 ? sensors_18 : sensors_22,
-                                             [&] { return commands_.hardware_mask(); });
+    const auto hardware = needed(ask_hardware_mask, *count == 18 ? sensors_18 : sensors_22);
     if (!hardware) return hardware.error();
     if (auto done = set_mask(*hardware); !done) return done;
-    const auto software =
-        needed<SensorMask>("?M", SensorMask{0xFFFFFF}, [&] { return commands_.software_mask(); });
+    const auto software = needed(ask_software_mask, SensorMask{0xFFFFFF});
     if (!software) return software.error();
-    const auto values =
-        needed<Count>("?N", Count{sensor_slots}, [&] { return commands_.value_count(); });
+    const auto values = needed(ask_value_count, std::uint8_t{sensor_slots});
     if (!values) return values.error();
     const ChannelMap map = make_channel_map(*hardware, *software, *values);
     if (map.count == 0) {
@@ -169,7 +166,7 @@ private:
   }
 
   Result<void> ask_hand() {
-    const auto side = needed<Side>("?R", Side::right, [&] { return commands_.side(); });
+    const auto side = needed(ask_side, Side::right);
     if (!side) return side.error();
     const SideOptions wishes{options_.hand, std::nullopt};
     const ChosenHand chosen = choose_hand(*side, wishes);
@@ -273,7 +270,7 @@ private:
 
   /// Records per second by the unit's present settings; 0: as fast as it can, or unknown.
   double ask_present_rate() {
-    const auto bytes = commands_.period_bytes();
+    const auto bytes = commands_.ask(ask_period);
     if (!bytes) return 0.0;
     const auto period = request_.word_order ? decode_period(bytes.value, *request_.word_order)
                                             : guess_period(bytes.value);
@@ -286,14 +283,14 @@ private:
     identity_.facts.push_back({name, std::move(value)});
   }
 
-  /// Returns the reply of `ask`, or `otherwise` if the unit does not know the query.
-  template <class T, class Ask>
-  Result<T> needed(const char* question, std::optional<T> otherwise, Ask&& ask) {
+  /// Returns the reply, or `otherwise` if the unit does not know the query.
+  template <class T>
+  Result<T> needed(Query<T> query, std::optional<std::type_identity_t<T>> otherwise) {
     Reply<T> reply;
     for (int k = 0; k < tries && !is_final(reply.answer); ++k)
-      reply = ask();
+      reply = commands_.ask(query);
     if (reply.answer == Answer::unknown && otherwise) return *otherwise;
-    if (!reply) return bad_answer(source_, reply.answer, question);
+    if (!reply) return bad_answer(source_, reply.answer, {'?', query.letter});
     return reply.value;
   }
 
@@ -346,7 +343,7 @@ Greeting greet(Transport& transport, Dialogue& dialogue, const std::vector<int>&
     reply.answer = dialogue.stop_stream(first ? Dialogue::max_drain : unlikely_drain);
     if (reply.answer != Answer::gone) {
       Commands commands(dialogue, first ? first_answer : unlikely_answer);
-      reply = first ? ask_state_twice(commands, bauds.size() == 1) : commands.state();
+      reply = first ? ask_state_twice(commands, bauds.size() == 1) : commands.ask(ask_state);
     }
     if (first || reply.answer != Answer::silent) greeting.reply = reply;
     if (is_of_unit(reply.answer) || reply.answer == Answer::gone) {

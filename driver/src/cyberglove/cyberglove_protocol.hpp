@@ -4,6 +4,7 @@
 //   [p.] the page of the CyberGlove manual, as authors of drivers cite it who had the manual
 //   [D]  two or more independent drivers that ran on real gloves
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -44,25 +45,36 @@ enum class Setting : char {
   wrist_switch = 'W',        ///< as the software sees it [V, p.52]
 };
 
+struct GloveState {
+  bool initialised = false;
+  bool connected = false; ///< a glove is plugged into the unit
+};
+
+using Vibration = std::array<std::uint8_t, 6>; ///< thumb to little finger, palm
+
 // Queries are '?' and a letter. They are answered by both, data of fixed length, and NUL [V, D].
+/// A query whose data mean a `T`.
+template <class T>
 struct Query {
   char letter;
   std::size_t data_bytes;
 };
-inline constexpr Query ask_state{'G', 1};         ///< bits below; 3 is a working glove [V, p.31]
-inline constexpr Query ask_sensor_count{'S', 1};  ///< 18 or 22 [V, D]
-inline constexpr Query ask_hardware_mask{'K', 3}; ///< sensors built in, LSB first [V]
-inline constexpr Query ask_software_mask{'M', 3}; ///< sensors wanted, LSB first [V]
-inline constexpr Query ask_value_count{'N', 1};   ///< only the first so many are sent [V]
-inline constexpr Query ask_right_hand{'R', 1};    ///< 1: right [V]
-inline constexpr Query ask_period{'T', 4};        ///< two 16-bit words, byte order disputed [p.47]
-inline constexpr Query ask_parameters{'P', 3};    ///< flags, LSB first; bits below [V, two drivers]
-inline constexpr Query ask_firmware{'V', 4};      ///< two 16-bit words, meaning unknown [D]
-inline constexpr Query ask_baud{'B', 1};          ///< the baud register, see baud_of_register() [V]
-inline constexpr Query ask_vibration{'A', 6};     ///< thumb to little finger, palm [D]
-inline constexpr char ask_calibration = 'C';      ///< an offset a sensor, then a gain a sensor [D]
-inline constexpr char ask_information = 'i';      ///< text of several lines; NUL ends it [V, D]
-inline constexpr char ask_firmware_text = 'v';    ///< text [V]
+inline constexpr Query<GloveState> ask_state{'G', 1};          ///< bits below [V, p.31]
+inline constexpr Query<std::uint8_t> ask_sensor_count{'S', 1}; ///< 18 or 22 [V, D]
+inline constexpr Query<SensorMask> ask_hardware_mask{'K', 3};  ///< sensors built in, LSB first [V]
+inline constexpr Query<SensorMask> ask_software_mask{'M', 3};  ///< sensors wanted, LSB first [V]
+inline constexpr Query<std::uint8_t> ask_value_count{'N', 1};  ///< only so many are sent [V]
+inline constexpr Query<Side> ask_side{'R', 1};                 ///< 1: right [V]
+/// Two 16-bit words, see decode_period(); byte order disputed [p.47].
+inline constexpr Query<std::array<std::byte, 4>> ask_period{'T', 4};
+inline constexpr Query<std::uint32_t> ask_parameters{'P', 3}; ///< flags, LSB first [V, two drivers]
+/// Two 16-bit words, meaning unknown [D].
+inline constexpr Query<std::array<std::uint8_t, 4>> ask_firmware{'V', 4};
+inline constexpr Query<std::uint8_t> ask_baud{'B', 1};   ///< see baud_of_register() [V]
+inline constexpr Query<Vibration> ask_vibration{'A', 6}; ///< [D]
+inline constexpr char ask_calibration = 'C';   ///< an offset a sensor, then a gain a sensor [D]
+inline constexpr char ask_information = 'i';   ///< text of several lines; NUL ends it [V, D]
+inline constexpr char ask_firmware_text = 'v'; ///< text [V]
 
 // Commands of the CyberGlove III only. They are answered by the same and NUL [D]; but 1S without
 // NUL, and the `interrupt` that ends its stream by one byte [two drivers].
@@ -71,7 +83,7 @@ inline constexpr std::string_view third_frame_rate = "1m";  ///< a byte: so many
 inline constexpr std::string_view third_stream = "1S";      ///< 12-bit records until `interrupt`
 inline constexpr double third_frame_step_hz = 30.0;
 
-// The bits of the reply to ?G [V, p.31].
+// The bits of the reply to ?G; both: a working glove [V, p.31].
 inline constexpr std::uint8_t state_initialised = 0x01;
 inline constexpr std::uint8_t state_connected = 0x02;
 
