@@ -105,13 +105,13 @@ TEST_SUITE("cyberglove_commands") {
         {"W\x01"sv, "W\0"sv, [](Commands& c) { return c.set(Setting::wrist_switch, true); }},
         {"Q\x01"sv, "Q\0"sv, [](Commands& c) { return c.set(Setting::quantised, true); }},
         {"M\x7F\xFF\x7F"sv, "M\0"sv, [](Commands& c) { return c.set_software_mask(sensors_22); }},
-        {"N\x12"sv, "N\0"sv, [](Commands& c) { return c.set_value_count(18); }},
-        {"Y\x01"sv, "Y\0"sv, [](Commands& c) { return c.set_sync(true); }},
+        {"N\x12"sv, "N\0"sv, [](Commands& c) { return c.send(set_value_count, 18); }},
+        {"Y\x01"sv, "Y\0"sv, [](Commands& c) { return c.send(set_sync, 1); }},
         {"A\xFF\x01\x02\x03\x04\x05\xFF"sv, "A\0"sv,
          [](Commands& c) { return c.set_vibration({1, 2, 3, 4, 5, 255}); }},
-        {"\x09"sv, "\x09\0"sv, [](Commands& c) { return c.reread_glove(); }},
-        {"1eu"sv, "1eu\0"sv, [](Commands& c) { return c.enable_hires(); }},
-        {"1m\x03"sv, "1m\0"sv, [](Commands& c) { return c.set_frame_rate(3); }},
+        {"\x09"sv, "\x09\0"sv, [](Commands& c) { return c.send(reread_glove); }},
+        {"1eu"sv, "1eu\0"sv, [](Commands& c) { return c.send(third_enable_usb); }},
+        {"1m\x03"sv, "1m\0"sv, [](Commands& c) { return c.send(third_frame_rate, 3); }},
     };
     for (const Case& one : cases) {
       CAPTURE(one.sent);
@@ -121,13 +121,13 @@ TEST_SUITE("cyberglove_commands") {
 
   TEST_CASE("each error is reported as what it is") {
     // After a refusal the unit is interrupted: it may take an argument for another command.
-    const auto sync = [](Commands& c) { return c.set_sync(true); };
+    const auto sync = [](Commands& c) { return c.send(set_sync, 1); };
     CHECK(say("Y\x01\x03", "ey\0"sv, sync) == Answer::bad_sync_rate);
     CHECK(say("Y\x01\x03", "e?\0e?\0"sv, sync) == Answer::unknown);
     CHECK(say("Y\x01\x03", "en\0"sv, sync) == Answer::bad_number);
     CHECK(say("Y\x01\x03", "eg\0"sv, sync) == Answer::no_glove);
     CHECK(say("Y\x01\x03", "", sync) == Answer::silent);
-    CHECK(say("1eu\x03", "e?\0e?\0"sv, [](Commands& c) { return c.enable_hires(); }) ==
+    CHECK(say("1eu\x03", "e?\0e?\0"sv, [](Commands& c) { return c.send(third_enable_usb); }) ==
           Answer::unknown);
     CHECK(say("t 1280 1\r\x03", "es\0"sv, [](Commands& c) {
             return c.set_period({1280, 1});

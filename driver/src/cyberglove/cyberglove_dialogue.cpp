@@ -252,7 +252,7 @@ Answer Dialogue::start_stream(std::string_view command) noexcept {
   return send(std::as_bytes(std::span(command)));
 }
 
-Answer Commands::set(std::string_view head, std::span<const std::uint8_t> arguments) noexcept {
+Answer Commands::send(std::string_view head, std::span<const std::uint8_t> arguments) noexcept {
   std::array<std::byte, 16> message{}; // the longest sets a period: t, two words and CR
   assert(head.size() + arguments.size() <= message.size());
   const auto letters = std::as_bytes(std::span(head));
@@ -267,8 +267,8 @@ Answer Commands::set(std::string_view head, std::span<const std::uint8_t> argume
   return answer;
 }
 
-Answer Commands::set(std::string_view head, std::uint8_t argument) noexcept {
-  return set(head, std::span(&argument, 1));
+Answer Commands::send(std::string_view head, std::uint8_t argument) noexcept {
+  return send(head, std::span(&argument, 1));
 }
 
 Reply<std::string> Commands::information() {
@@ -308,22 +308,14 @@ Reply<bool> Commands::get(Setting setting) noexcept {
 
 Answer Commands::set(Setting setting, bool on) noexcept {
   const auto letter = static_cast<char>(setting);
-  return set({&letter, 1}, on ? 1 : 0);
+  return send({&letter, 1}, on ? 1 : 0);
 }
 
 Answer Commands::set_software_mask(SensorMask mask) noexcept {
-  return set(cyberglove::set_software_mask,
-             std::array{static_cast<std::uint8_t>(mask.bits & 0xFFU),
-                        static_cast<std::uint8_t>(mask.bits >> 8U & 0xFFU),
-                        static_cast<std::uint8_t>(mask.bits >> 16U & 0xFFU)});
-}
-
-Answer Commands::set_value_count(std::uint8_t count) noexcept {
-  return set(cyberglove::set_value_count, count);
-}
-
-Answer Commands::set_sync(bool on) noexcept {
-  return set(cyberglove::set_sync, on ? 1 : 0);
+  return send(cyberglove::set_software_mask,
+              std::array{static_cast<std::uint8_t>(mask.bits & 0xFFU),
+                         static_cast<std::uint8_t>(mask.bits >> 8U & 0xFFU),
+                         static_cast<std::uint8_t>(mask.bits >> 16U & 0xFFU)});
 }
 
 Reply<std::optional<WordOrder>> Commands::set_period(Period period) noexcept {
@@ -337,7 +329,7 @@ Reply<std::optional<WordOrder>> Commands::set_period(Period period) noexcept {
   std::array<std::uint8_t, text.size()> bytes{};
   std::copy(text.begin(), end, bytes.begin());
   const auto size = static_cast<std::size_t>(end - text.begin());
-  const Answer done = set(set_period_text, std::span(bytes).first(size));
+  const Answer done = send(set_period_text, std::span(bytes).first(size));
   // An unreadable confirmation is no confirmation, but the query shows what the unit did.
   if (done != Answer::good && done != Answer::nonsense) return {done, std::nullopt};
   const auto reply = ask(ask_period);
@@ -365,20 +357,7 @@ Reply<HardwareCalibration> Commands::hardware_calibration(std::size_t sensors) n
 Answer Commands::set_vibration(const Vibration& strength) noexcept {
   std::array<std::uint8_t, 1 + std::tuple_size_v<Vibration>> bytes{all_vibrators};
   std::copy(strength.begin(), strength.end(), bytes.begin() + 1);
-  return set(cyberglove::set_vibration, bytes);
-}
-
-Answer Commands::reread_glove() noexcept {
-  const auto letter = std::to_integer<char>(cyberglove::reread_glove);
-  return set({&letter, 1});
-}
-
-Answer Commands::enable_hires() noexcept {
-  return set(third_enable_usb);
-}
-
-Answer Commands::set_frame_rate(std::uint8_t thirties) noexcept {
-  return set(third_frame_rate, thirties);
+  return send(cyberglove::set_vibration, bytes);
 }
 
 } // namespace nendo::driver::cyberglove

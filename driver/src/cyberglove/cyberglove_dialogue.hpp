@@ -139,29 +139,21 @@ public:
   template <class T>
   Reply<T> ask(Query<T> query) noexcept;
 
+  /// Sends a command of raw bytes.
+  Answer send(std::string_view head, std::span<const std::uint8_t> arguments = {}) noexcept;
+  Answer send(std::string_view head, std::uint8_t argument) noexcept;
+
   // Settings, which the unit forgets when it is switched off.
   Reply<bool> get(Setting setting) noexcept;
   Answer set(Setting setting, bool on) noexcept;
   Answer set_software_mask(SensorMask mask) noexcept;
-  Answer set_value_count(std::uint8_t count) noexcept;
-  /// Makes records begin with Y and come at the pulses of the sync input. Pulses that are too fast
-  /// give bad_sync_rate.
-  Answer set_sync(bool on) noexcept;
   /// Sets the period in text, which has no byte order, and then asks for it in bytes. The value is
   /// the byte order that the reply shows, if the unit knows the query. bad_rate and bad_number mean
   /// that the unit refuses, and other_value that it set another period.
   Reply<std::optional<WordOrder>> set_period(Period period) noexcept;
   Answer set_vibration(const Vibration& strength) noexcept;
-  Answer reread_glove() noexcept; ///< reads the memory of a glove that was swapped
-
-  // CyberGlove III only.
-  Answer enable_hires() noexcept;                        ///< 12-bit records over the cable
-  Answer set_frame_rate(std::uint8_t thirties) noexcept; ///< in steps of 30 Hz
 
 private:
-  Answer set(std::string_view head, std::span<const std::uint8_t> arguments = {}) noexcept;
-  Answer set(std::string_view head, std::uint8_t argument) noexcept;
-
   Dialogue& dialogue_;
   const std::chrono::milliseconds timeout_;
 };

@@ -82,7 +82,7 @@ public:
   void end_stream(Transport& transport, const ReplyDeadline& limit) noexcept override {
     Dialogue dialogue(transport, limit.deadline, limit.cancelled);
     dialogue.stop_stream();
-    if (identity_.sync) Commands(dialogue, control_answer).set_sync(false);
+    if (identity_.sync) Commands(dialogue, control_answer).send(set_sync, 0);
     parser_.count_discarded(dialogue.bytes_received());
   }
 
@@ -134,7 +134,7 @@ private:
     if (reason == IdentifyReason::damaged || answered_without_glove_ || glove_removed_) {
       transport.set_baud(baud_);
       if (dialogue.stop_stream() != Answer::gone)
-        Commands(dialogue, control_answer).reread_glove(); // it may be another one
+        Commands(dialogue, control_answer).send(reread_glove); // it may be another one
     }
     const Greeting greeting =
         greet(transport, dialogue, bauds_to_try(baud_, !options_.baud.has_value()));
@@ -152,7 +152,7 @@ private:
   /// The last step: sync mode may send records at once.
   Answer begin(Dialogue& dialogue) const noexcept {
     if (identity_.sync) {
-      const Answer answer = Commands(dialogue, control_answer).set_sync(true);
+      const Answer answer = Commands(dialogue, control_answer).send(set_sync, 1);
       if (answer == Answer::gone) return answer;
     }
     return dialogue.start_stream(identity_.hires ? third_stream : stream_command);

@@ -132,7 +132,7 @@ private:
       return done;
     // Otherwise the count of an earlier, smaller mask would cut this one. ?N reports the result.
     const auto count = static_cast<std::uint8_t>(std::popcount(sent));
-    const Answer answer = commands_.set_value_count(count);
+    const Answer answer = commands_.send(set_value_count, count);
     return answer == Answer::gone ? Result<void>(bad_answer(source_, answer, text))
                                   : Result<void>();
   }
@@ -231,11 +231,12 @@ private:
     }
     const auto steps = plan_hires(options_, request_.baud);
     if (!steps) return Error{steps.error().code, source_ + ": " + steps.error().message};
-    if (auto done = apply("hires=on", [&] { return commands_.enable_hires(); }); !done) return done;
+    if (auto done = apply("hires=on", [&] { return commands_.send(third_enable_usb); }); !done)
+      return done;
     if (*steps) {
       identity_.rate_hz = **steps * third_frame_step_hz;
       if (auto done = apply("rate=" + text_of(identity_.rate_hz),
-                            [&] { return commands_.set_frame_rate(**steps); });
+                            [&] { return commands_.send(third_frame_rate, **steps); });
           !done) {
         return done;
       }

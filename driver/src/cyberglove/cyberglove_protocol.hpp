@@ -19,8 +19,8 @@ inline constexpr std::byte terminator{0x00};
 
 // Control commands, a single byte each.
 inline constexpr std::byte interrupt{0x03}; ///< ^C: ends a stream; answered 03 00 [V, D]
-inline constexpr std::byte reread_glove{
-    0x09}; ///< ^I: read the glove's memory again, after a swap [V]
+/// ^I: read the glove's memory again, after a swap [V].
+inline constexpr std::string_view reread_glove = "\x09";
 
 inline constexpr std::string_view stream_command =
     "S"; ///< one record after the other until `interrupt` [D]
@@ -29,10 +29,12 @@ inline constexpr std::string_view stream_command =
 // between them [V]. In text they are the small letter, decimal numbers and CR.
 inline constexpr std::string_view set_software_mask = "M"; ///< 3 bytes, LSB first [V, D]
 inline constexpr std::string_view set_value_count = "N";   ///< 1 byte [V, D]
-inline constexpr std::string_view set_sync = "Y";          ///< bool: records at external pulses [V]
-inline constexpr std::string_view set_period_text = "t";   ///< two numbers; T's order is disputed
-inline constexpr std::string_view set_vibration = "A"; ///< count, so many pairs index, value [D]
-inline constexpr std::uint8_t all_vibrators = 0xFF;    ///< a count: then 6 values follow [D]
+/// bool: records begin with Y and come at the pulses of the sync input; refused by `ey` if these
+/// are too fast [V].
+inline constexpr std::string_view set_sync = "Y";
+inline constexpr std::string_view set_period_text = "t"; ///< two numbers; T's order is disputed
+inline constexpr std::string_view set_vibration = "A";   ///< count, so many pairs index, value [D]
+inline constexpr std::uint8_t all_vibrators = 0xFF;      ///< a count: then 6 values follow [D]
 
 /// On-off settings. The letter and a byte of 0 or 1 sets one, '?' and the letter asks for it.
 enum class Setting : char {
