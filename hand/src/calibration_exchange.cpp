@@ -94,38 +94,25 @@ private:
   double unit_rad_ = 1.0;                          ///< the gains' unit
 };
 
-struct Place {
-  Sensor sensor;
-  double sign; ///< sign of our angle relative to the file's hand model
-};
-
 // The places of the hand model of asr_cyberglove_lib. It turns fingers about one axis, so that the
 // index finger spreads towards negative angles and ring and little finger towards positive ones;
-// flexion is negative.
-constexpr std::array<Place, 22> places{{
-    {Sensor::wrist_yaw, -1.0},
-    {Sensor::wrist_pitch, -1.0},
-    {Sensor::thumb_abduction, -1.0},
-    {Sensor::thumb_roll, -1.0},
-    {Sensor::thumb_mcp, -1.0},
-    {Sensor::thumb_ip, -1.0},
-    {Sensor::index_mcp, -1.0},
-    {Sensor::index_middle_abduction, -1.0},
-    {Sensor::index_pip, -1.0},
-    {Sensor::index_dip, -1.0},
-    {Sensor::middle_mcp, -1.0},
-    {Sensor::palm_arch, 1.0}, // the middle finger's abduction, which its programs ignore
-    {Sensor::middle_pip, -1.0},
-    {Sensor::middle_dip, -1.0},
-    {Sensor::ring_mcp, -1.0},
-    {Sensor::middle_ring_abduction, 1.0},
-    {Sensor::ring_pip, -1.0},
-    {Sensor::ring_dip, -1.0},
-    {Sensor::little_mcp, -1.0},
-    {Sensor::ring_little_abduction, 1.0},
-    {Sensor::little_pip, -1.0},
-    {Sensor::little_dip, -1.0},
-}};
+// flexion is negative. The middle finger's abduction, which its programs ignore, is the palm arch.
+constexpr std::array places{
+    Sensor::wrist_yaw,       Sensor::wrist_pitch,
+    Sensor::thumb_abduction, Sensor::thumb_roll,
+    Sensor::thumb_mcp,       Sensor::thumb_ip,
+    Sensor::index_mcp,       Sensor::index_middle_abduction,
+    Sensor::index_pip,       Sensor::index_dip,
+    Sensor::middle_mcp,      Sensor::palm_arch,
+    Sensor::middle_pip,      Sensor::middle_dip,
+    Sensor::ring_mcp,        Sensor::middle_ring_abduction,
+    Sensor::ring_pip,        Sensor::ring_dip,
+    Sensor::little_mcp,      Sensor::ring_little_abduction,
+    Sensor::little_pip,      Sensor::little_dip,
+};
+/// The sensors whose angles have our sign there; the others' are negative.
+constexpr SensorMask same_sign =
+    mask_of(std::array{Sensor::middle_ring_abduction, Sensor::ring_little_abduction});
 
 struct Point {
   double angle_rad;
@@ -194,7 +181,7 @@ Result<ImportedCalibration> parse_two_point(std::string_view text, std::string_v
     const auto fields = fields_of(*line);
     const auto a = point_of(fields[0]);
     const auto b = point_of(fields.size() == 2 ? fields[1] : std::string_view{});
-    const auto [sensor, sign] = places[at];
+    const Sensor sensor = places[at];
     const std::string place = std::string(name_of(sensor)) + ": ";
     if (!a || !b) return bad(place + "must be two points angle_rad:count, counts 0 to 255");
     if (sensor == Sensor::palm_arch) continue;
@@ -202,7 +189,7 @@ Result<ImportedCalibration> parse_two_point(std::string_view text, std::string_v
     const double slope = (b->angle_rad - a->angle_rad) / (b->count - a->count);
     if (slope == 0.0) return bad(place + "has one angle at two counts; measure it again");
     const auto slot = index_of(sensor);
-    read.sensors[slot] = {sign * slope, a->count - a->angle_rad / slope};
+    read.sensors[slot] = {same_sign.has(sensor) ? slope : -slope, a->count - a->angle_rad / slope};
     read.line[slot] = lines.line();
   }
   if (at < places.size())
