@@ -4,7 +4,6 @@
 // Each vertex x is weighted by w(x) = psi(|x - c| / r), the paper's radial function about the dab's
 // centre c, so that a dab ends as smoothly as a field.
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
-// A hand that grabs clay: two of its parts close on it from sides that face each other.
-// What lies under them then follows them both ways, until they have opened. All lengths are in a
+// A hand that grabs clay: two of its parts close on it from sides that face each other. What lies
+// under them then follows them both ways, by a field, until they have opened. All lengths are in a
 // layout's coordinates.
 
 #include <cstddef>

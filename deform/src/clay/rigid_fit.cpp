@@ -1,7 +1,6 @@
 #include "clay/rigid_fit.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <nendo/deform/dense.hpp>
 

@@ -1,6 +1,7 @@
 #pragma once
-// The rigid motion of clay that lies on nothing: what sticks to the bodies carries it, and it
-// evades what presses it. All lengths are in a layout's coordinates.
+// Rigid motions: that of clay that lies on nothing, which follows the bodies that stick to it and
+// evades those that press it, and those between two frames. All lengths are in a layout's
+// coordinates.
 
 #include <span>
 

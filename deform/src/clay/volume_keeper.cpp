@@ -1,6 +1,7 @@
 #include "clay/volume_keeper.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace nendo::deform {

@@ -1,5 +1,5 @@
 #pragma once
-// No injective map moves fingertips along paths that cross. Such pairs are held at a least gap:
+// No injective map moves fingertips along paths that cross. Such pairs are held at a min gap:
 // when a pair comes to it, a wall is put between the two, across the line that joins them. Neither
 // of them passes the wall, and both slide along it freely. Each is displaced by the same amount.
 

@@ -134,7 +134,7 @@ StrokeResult Type2Deformer::end_at(const Points& tips) {
   return follow(tips, &FingertipCurve::end_at);
 }
 
-/// A piece without a usable field leaves the shape alone; the curve continues behind it.
+/// A piece without a usable field leaves the shape alone; the curve continues after it.
 StrokeResult Type2Deformer::follow(const Points& tips, Lead lead) {
   assert(tips.cols() == current_.cols());
   report_ = {};

@@ -1,5 +1,5 @@
 #pragma once
-// Evaluates fields on shapes in blocks, with vector instructions: Type-1 and Type-2 share it.
+// Shapes in blocks with their bounds, and the evaluation of fields on them by vector instructions.
 
 #include <cstddef>
 #include <memory>

@@ -1,3 +1,5 @@
+// Fields of Wendland's functions, evaluated in double, and the names of the functions.
+
 #include <nendo/deform/field.hpp>
 
 #include <algorithm>

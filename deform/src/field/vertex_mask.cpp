@@ -1,3 +1,5 @@
+// A mask of vertices, and steps of which it undoes a part (masked_step.hpp).
+
 #include <nendo/deform/vertex_mask.hpp>
 
 #include <algorithm>

@@ -50,7 +50,7 @@ void BoxTree::build(std::span<const SpacePoint> places, std::span<const Corners>
   nodes_.reserve(order_.size());
   nodes_.push_back({});
   split(0, 0, to_index(order_.size()));
-  for (std::size_t node = nodes_.size(); node-- > 0;) // children come after
+  for (std::size_t node = nodes_.size(); node-- > 0;) // children come after their node
     nodes_[node].box = box_of(nodes_[node]);
 }
 

@@ -4,6 +4,7 @@
 // Delaunay triangulations, 1993). All decisions are exact, so the result is a triangulation
 // whatever the points are, and the same calls give the same triangles.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>

@@ -16,7 +16,7 @@ constexpr bool is_usable(double value) noexcept {
   return value <= largest_number && value >= -largest_number;
 }
 
-/// Why a field of a text is no usable number, after that field.
+/// Why a field of a text is no usable number, to follow that field in a message.
 constexpr std::string_view not_usable(std::string_view field) noexcept {
   return field.find(',') == std::string_view::npos
              ? " is not a finite number of at most 1e100"

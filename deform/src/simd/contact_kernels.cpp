@@ -1,6 +1,5 @@
 #include "simd/contact_kernels.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE

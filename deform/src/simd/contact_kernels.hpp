@@ -1,6 +1,7 @@
 #pragma once
-// Distances of vertices from the parts of a body, a block at a time. All numbers are in a layout's
-// coordinates (BlockLayout).
+// What clay computes of a block at a time where bodies touch: the distances of vertices from parts,
+// the nearest vertices, their loads, and which places and boxes are near each other. All numbers
+// are in a layout's coordinates (BlockLayout).
 
 #include <array>
 #include <cstddef>

@@ -2,7 +2,6 @@
 // What a VolumeKeeper computes of the vertices of a block and the rings of neighbours around them.
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <memory>
 #include <numeric>
-#include <utility>
 
 #include "geometry/octree_order.hpp"
 #include "geometry/usable.hpp"

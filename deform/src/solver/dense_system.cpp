@@ -1,3 +1,6 @@
+// M stored densely: for up to a hundred start points by loops that do not allocate, for more by
+// Eigen.
+
 #include <algorithm>
 #include <cmath>
 #include <vector>

@@ -1,6 +1,7 @@
 #pragma once
-// M of the equations (supports.hpp), with the ties in it, and its Cholesky factor. There are three
-// ways to store them, by the number of start points and of their neighbours.
+// M of the equations (supports.hpp), with the own functions and the ties in it, and its Cholesky
+// factor. There are three ways to store them, by the number of start points and of their
+// neighbours.
 
 #include <cstdint>
 #include <memory>

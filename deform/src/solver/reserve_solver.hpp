@@ -1,5 +1,5 @@
 #pragma once
-// Allocates ahead what a tick must not allocate.
+// What a deformer makes of its supports before the first tick, which must not allocate.
 
 #include <nendo/deform/csrbf.hpp>
 #include <nendo/deform/vertex_blocks.hpp>

@@ -1,6 +1,6 @@
 #pragma once
-// The kernel sum_s w_s psi(d / r_s) that all start points share, and what it is of those that are
-// near each other.
+// The kernel sum_s w_s psi(d / r_s) that all start points share, and the ties between those that
+// are near each other.
 
 #include <nendo/deform/csrbf.hpp>
 

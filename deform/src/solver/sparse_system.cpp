@@ -1,3 +1,5 @@
+// M stored sparsely: columns of the neighbours that a grid finds, factorised by Eigen.
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
