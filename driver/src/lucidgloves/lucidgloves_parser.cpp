@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "spec/number_in.hpp"
+#include <nendo/base/number_in.hpp>
 
 namespace nendo::driver::lucidgloves {
 namespace {
