@@ -7,6 +7,10 @@
 namespace nendo::hand {
 namespace {
 
+int distance(RawCount a, RawCount b) noexcept {
+  return std::abs(int{a.value} - int{b.value});
+}
+
 bool is_movement(double jump_rad, double elapsed_s) noexcept {
   // A gain that is not a number says nothing about the joint: let it pass.
   return !(jump_rad > SensorGate::noise_rad + SensorGate::max_speed_rad_s * elapsed_s);
@@ -27,16 +31,20 @@ GloveSample SensorGate::pass(const GloveSample& sample, const Calibration& calib
       continue;
     }
     const RawCount count = sample.raw[slot];
+    const bool comparable = last.known && same_hand;
     // Clocks are the glove's word: time that runs backwards is no time.
     const double elapsed_s = std::max(seconds_between(last.time, time), min_s);
-    const double jump_rad = std::abs(calibration.sensors[slot].gain_rad_per_count) *
-                            std::abs(count.value - last.count.value);
-    if (last.known && same_hand && !last.holding && !is_movement(jump_rad, elapsed_s)) {
+    const double jump_rad =
+        std::abs(calibration.sensors[slot].gain_rad_per_count) * distance(count, last.count);
+    if (comparable && !last.holding && !is_movement(jump_rad, elapsed_s)) {
       last.holding = true;
+      last.refused = count;
       passed.raw[slot] = last.count;
       continue;
     }
-    last = {time, count, true, false};
+    const bool came_back = distance(count, last.count) < distance(count, last.refused);
+    if (comparable && last.holding && came_back) ++spikes_[slot];
+    last = {time, count, {}, true, false};
   }
   return passed;
 }

@@ -4,6 +4,7 @@
 // and a joint needs longer to move there and back.
 
 #include <array>
+#include <cstdint>
 
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/calibration.hpp>
@@ -29,14 +30,19 @@ public:
   /// after an absence or a change of hand is accepted. Wait-free.
   GloveSample pass(const GloveSample& sample, const Calibration& calibration) noexcept;
 
+  /// Returns, by slot, the number of rejected jumps that came back and so were no movements.
+  const std::array<std::uint64_t, sensor_slots>& spikes() const noexcept { return spikes_; }
+
 private:
   struct Accepted {
     HostTime time{};
     RawCount count;
+    RawCount refused; ///< the count just rejected, if `holding`
     bool known = false;
-    bool holding = false; ///< the last count was rejected
+    bool holding = false;
   };
   std::array<Accepted, sensor_slots> accepted_{};
+  std::array<std::uint64_t, sensor_slots> spikes_{};
   Side side_ = Side::right;
 };
 
