@@ -75,9 +75,9 @@ VectorXd by_all_sets(const MatrixXd& matrix, const VectorXd& depths) {
   return VectorXd::Constant(count, -1.0);
 }
 
-VectorXd pressures_of(const PressProblem& problem) {
-  VectorXd all(static_cast<Eigen::Index>(problem.size()));
-  for (std::size_t i = 0; i < problem.size(); ++i)
+VectorXd pressures_of(const PressProblem& problem, std::size_t count) {
+  VectorXd all(static_cast<Eigen::Index>(count));
+  for (std::size_t i = 0; i < count; ++i)
     all[static_cast<Eigen::Index>(i)] = problem.pressure(i);
   return all;
 }
@@ -109,8 +109,9 @@ TEST_SUITE("press_problem") {
       REQUIRE(wanted.minCoeff() >= -1e-12);
       problem.assign(points, 1.5);
       problem.solve_pressure(0.0);
-      CHECK((matrix_of(points, 1.5) * (pressures_of(problem) - wanted)).cwiseAbs().maxCoeff() <
-            1e-4);
+      CHECK((matrix_of(points, 1.5) * (pressures_of(problem, points.size()) - wanted))
+                .cwiseAbs()
+                .maxCoeff() < 1e-4);
     }
   }
 
@@ -121,12 +122,11 @@ TEST_SUITE("press_problem") {
       const auto points = random_contacts(random, 200, 4.0);
       const MatrixXd matrix = matrix_of(points, 2.0);
       problem.assign(points, 2.0);
-      const double left = problem.solve_pressure(0.0);
-      const VectorXd pressure = pressures_of(problem);
+      problem.solve_pressure(0.0);
+      const VectorXd pressure = pressures_of(problem, points.size());
       const VectorXd gap = matrix * pressure - depths_of(points);
       CHECK(pressure.minCoeff() >= 0.0);
       CHECK(gap.minCoeff() > -2e-3);
-      CHECK(left == doctest::Approx(std::max(0.0, -gap.minCoeff())).epsilon(1e-3));
       CHECK((pressure.array() * gap.array()).abs().maxCoeff() < 2e-3);
     }
   }
@@ -138,7 +138,7 @@ TEST_SUITE("press_problem") {
     points[0].depth = points[1].depth = 1.0;
     PressProblem problem(2);
     problem.assign(points, 1.0);
-    CHECK(problem.solve_pressure(0.0) > 0.9);
+    problem.solve_pressure(0.0);
     CHECK(std::isfinite(problem.pressure(0)));
     CHECK(field_at(problem, points, 1.0, Vector3d::Zero()).norm() < 2.0);
   }

@@ -45,7 +45,6 @@ public:
   /// Returns whether a block is within `margin` of a box of one of the bodies.
   bool is_any_near(const BoundedShape& shape, std::span<const BoxGate> boxes,
                    double margin) const noexcept;
-  const BoxGate& box_of(std::size_t body) const noexcept { return body_boxes_[body]; }
 
   /// Calls visit(block, nearest) for the blocks within `margin` of the body's parts, in order.
   /// Distances are right if they are at most `margin`, and otherwise more than it.

@@ -108,17 +108,13 @@ void PressProblem::assign(std::span<const ContactPoint> points, double radius) n
   fill_press_matrices(arrays(), radius, ridge);
 }
 
-double PressProblem::solve_pressure(double extra) noexcept {
+void PressProblem::solve_pressure(double extra) noexcept {
   double deepest = 0.0;
   for (std::size_t i = 0; i < stride_; ++i) {
     w_[i] = i < count_ ? -p_[i] - extra : 0.0;
     deepest = std::max(deepest, -w_[i]);
   }
   sweep_pressure(arrays(), l_.get(), w_.get(), enough * deepest, max_sweeps);
-  double left = 0.0;
-  for (std::size_t i = 0; i < count_; ++i)
-    left = std::max(left, -w_[i]);
-  return left;
 }
 
 /// Returns whether anything moved.

@@ -58,9 +58,8 @@ public:
 
   /// Sets the places and the radius. Places may coincide. The other functions are for these.
   void assign(std::span<const ContactPoint> points, double radius) noexcept;
-  /// Finds l for these depths below `points`' own; `extra` is added to each. Returns the largest
-  /// depth that is left at a place.
-  double solve_pressure(double extra) noexcept;
+  /// Finds l for the points' depths, with `extra` added to each.
+  void solve_pressure(double extra) noexcept;
   /// Finds t, one Friction per place, in the order of the points; `coefficient` is Coulomb's. Slip
   /// begins at the limit and ends below 0.8 of it, so that tremor does not flicker. Call it after
   /// solve_pressure().
@@ -69,7 +68,6 @@ public:
   /// Returns l_i n_i + t_i.
   Eigen::Vector3d coefficient(std::size_t i) const noexcept;
   double pressure(std::size_t i) const noexcept { return l_[i]; }
-  std::size_t size() const noexcept { return count_; }
   /// Returns an L with |s(x) - s(y)| <= L |x - y|, by the field's norm in the native space of
   /// Wendland's C2 (jacobian.hpp). Where L < 1, nothing folds. Where that is more than `enough`, it
   /// is the lesser of that and a SlopeGrid's.
