@@ -10,6 +10,8 @@
 
 #include <doctest/doctest.h>
 
+#include "mesh/used_entries.hpp"
+
 namespace surface_mesh_test {
 
 using namespace nendo::deform;
@@ -212,9 +214,9 @@ TEST_SUITE("surface mesh") {
     mesh.collapse(edge);
     Renumbering numbers;
     const std::vector<Corners> faces = mesh.take(numbers);
-    renumber(of_points, numbers.points);
-    renumber(of_faces, numbers.faces);
-    renumber(none, numbers.faces);
+    keep_values(of_points, numbers.points, no_index);
+    keep_values(of_faces, numbers.faces, no_index);
+    keep_values(none, numbers.faces, no_index);
     CHECK(none.empty());
     REQUIRE(of_points.size() == 15);
     REQUIRE(of_faces.size() == faces.size());
