@@ -12,17 +12,11 @@ namespace nendo::deform {
 namespace {
 
 /// Remembers the first fault, and counts those that are like it.
-class FaultTally {
-public:
-  void add(ManifoldFault fault, std::uint32_t face, std::uint32_t from, std::uint32_t to) noexcept {
-    if (check_.fault == ManifoldFault::none) check_ = {fault, 0, face, from, to};
-    if (check_.fault == fault) ++check_.count;
-  }
-  const ManifoldCheck& check() const noexcept { return check_; }
-
-private:
-  ManifoldCheck check_;
-};
+void note_fault(ManifoldFault fault, std::uint32_t face, std::uint32_t from, std::uint32_t to,
+                ManifoldCheck& check) noexcept {
+  if (check.fault == ManifoldFault::none) check = {fault, 0, face, from, to};
+  if (check.fault == fault) ++check.count;
+}
 
 /// Sorts the corners, and returns one that is there twice, or the end.
 auto find_repeated(std::span<const std::uint32_t> corners, std::vector<std::uint32_t>& sorted) {
@@ -32,24 +26,25 @@ auto find_repeated(std::span<const std::uint32_t> corners, std::vector<std::uint
 }
 
 void check_faces(std::span<const std::uint32_t> starts, std::span<const std::uint32_t> corners,
-                 FaultTally& tally) {
+                 ManifoldCheck& check) {
   std::vector<std::uint32_t> sorted;
   for (std::uint32_t face = 0; face + 1 < starts.size(); ++face) {
     const auto own = corners.subspan(starts[face], starts[face + 1] - starts[face]);
     const std::uint32_t vertex = own.empty() ? 0 : own[0];
     if (own.size() < 3) {
-      tally.add(ManifoldFault::few_corners, face, vertex, vertex);
+      note_fault(ManifoldFault::few_corners, face, vertex, vertex, check);
       continue;
     }
     if (own.size() == 3 && own[0] != own[1] && own[1] != own[2] && own[2] != own[0]) continue;
     const auto twice = find_repeated(own, sorted);
-    if (twice != sorted.end()) tally.add(ManifoldFault::repeated_corner, face, *twice, *twice);
+    if (twice != sorted.end())
+      note_fault(ManifoldFault::repeated_corner, face, *twice, *twice, check);
   }
 }
 
 /// An edge's fault is counted once, at the least of the faces that it concerns.
 void check_edges(std::span<const std::uint32_t> starts, std::span<const std::uint32_t> corners,
-                 const HalfEdges& edges, FaultTally& tally) {
+                 const HalfEdges& edges, ManifoldCheck& check) {
   for (std::uint32_t face = 0; face + 1 < starts.size(); ++face)
     for (std::uint32_t edge = starts[face]; edge < starts[face + 1]; ++edge) {
       const std::uint32_t from = corners[edge];
@@ -70,11 +65,12 @@ void check_edges(std::span<const std::uint32_t> starts, std::span<const std::uin
       const ManifoldFault fault = same + opposite == 1  ? ManifoldFault::open_edge
                                   : same + opposite > 2 ? ManifoldFault::crowded_edge
                                                         : ManifoldFault::turned_faces;
-      tally.add(fault, face, from, to);
+      note_fault(fault, face, from, to, check);
     }
 }
 
-void check_fans(std::span<const std::uint32_t> starts, const HalfEdges& edges, FaultTally& tally) {
+void check_fans(std::span<const std::uint32_t> starts, const HalfEdges& edges,
+                ManifoldCheck& check) {
   for (std::uint32_t vertex = 0; vertex + 1 < edges.out.starts.size(); ++vertex) {
     const std::size_t count = edges.out[vertex].size();
     if (count == 0) continue;
@@ -87,7 +83,8 @@ void check_fans(std::span<const std::uint32_t> starts, const HalfEdges& edges, F
     } while (edge != first && turned <= count);
     if (turned == count) continue;
     const auto face = std::upper_bound(starts.begin(), starts.end(), first) - starts.begin() - 1;
-    tally.add(ManifoldFault::pinched_vertex, static_cast<std::uint32_t>(face), vertex, vertex);
+    note_fault(ManifoldFault::pinched_vertex, static_cast<std::uint32_t>(face), vertex, vertex,
+               check);
   }
 }
 
@@ -96,16 +93,15 @@ void check_fans(std::span<const std::uint32_t> starts, const HalfEdges& edges, F
 ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,
                                     std::span<const std::uint32_t> face_corners,
                                     const HalfEdges& edges) {
-  FaultTally tally;
   if (face_starts.size() < 2) return {ManifoldFault::no_faces, 1, 0, 0, 0};
-  check_faces(face_starts, face_corners, tally);
-  if (!tally.check()) return tally.check();
+  ManifoldCheck check;
+  check_faces(face_starts, face_corners, check);
+  if (!check) return check;
   // Of two edges alike, only their twin sees both.
   if (std::find(edges.twin.begin(), edges.twin.end(), no_index) != edges.twin.end())
-    check_edges(face_starts, face_corners, edges, tally);
-  if (!tally.check()) return tally.check();
-  check_fans(face_starts, edges, tally);
-  return tally.check();
+    check_edges(face_starts, face_corners, edges, check);
+  if (check) check_fans(face_starts, edges, check);
+  return check;
 }
 
 ManifoldCheck check_closed_manifold(std::span<const std::uint32_t> face_starts,

@@ -35,14 +35,12 @@ public:
   std::uint32_t place_of(std::uint32_t point) {
     const SpaceCell own = cell_of(point);
     std::uint32_t found = no_index;
-    if (tolerance_ > 0.0) {
-      for (const double x : {-1.0, 0.0, 1.0})
-        for (const double y : {-1.0, 0.0, 1.0})
-          for (const double z : {-1.0, 0.0, 1.0})
-            look({own[0] + x, own[1] + y, own[2] + z}, point, found);
-    } else {
-      look(own, point, found);
-    }
+    constexpr std::array offsets{0.0, -1.0, 1.0};
+    const auto beside = std::span(offsets).first(tolerance_ > 0.0 ? 3 : 1);
+    for (const double x : beside)
+      for (const double y : beside)
+        for (const double z : beside)
+          look({own[0] + x, own[1] + y, own[2] + z}, point, found);
     if (found != no_index) return found;
     cells_[own].push_back(point);
     return point;
