@@ -125,17 +125,7 @@ struct VolumeParts {
 /// Returns psi / kernel_factor.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V air_weight(D d, Wendland air, V o) {
-  switch (air) {
-  case Wendland::c0:
-    return weight<Wendland::c0>(d, o);
-  case Wendland::c2:
-    return weight<Wendland::c2>(d, o);
-  case Wendland::c4:
-    return weight<Wendland::c4>(d, o);
-  case Wendland::c6:
-    break;
-  }
-  return weight<Wendland::c6>(d, o);
+  return with_kernel(air, [&](auto kernel) HWY_ATTR { return weight<kernel.value>(d, o); });
 }
 
 /// Adds (A I + B u u^T) a for each place: A a + B (u.a) u.
