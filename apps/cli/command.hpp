@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,14 @@ public:
   /// to report.
   void on_chosen(std::function<int()> command);
   void on_chosen(std::function<Result<void>()> command);
+  /// Does the same with a function of the command's options. Makes them, and returns them for the
+  /// descriptions of their options.
+  template <class Options, class Run>
+  Options& on_chosen(Run run) {
+    auto options = std::make_shared<Options>();
+    on_chosen([options, run] { return run(*options); });
+    return *options;
+  }
   /// Requires one of its subcommands.
   void require_command();
   /// Returns the first of these options, each by one name, that was given; empty: none. For the

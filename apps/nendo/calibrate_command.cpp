@@ -5,7 +5,6 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -345,28 +344,28 @@ int calibrate(Options& options) {
 
 void nendo::app::add_calibrate(cli::Command& program) {
   using namespace calibrate_command;
-  auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("calibrate", "Calibrates a glove to a wearer's hand, by guided poses");
-  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, auto, ...");
-  command.add_option("--user", options->user, "Name of the wearer");
-  command.add_flag("--quick", options->quick, "Use only two poses: the flat hand and the fist");
-  command.add_flag("--touch-up", options->touch_up,
+  Options& options = command.on_chosen<Options>(calibrate_command::calibrate);
+  command.add_option("GLOVE", options.glove, "serial:/dev/ttyUSB0, auto, ...");
+  command.add_option("--user", options.user, "Name of the wearer");
+  command.add_flag("--quick", options.quick, "Use only two poses: the flat hand and the fist");
+  command.add_flag("--touch-up", options.touch_up,
                    "Adjust the existing calibration after the glove was put on again: a free "
                    "motion, flat hand, fist and pinches");
-  command.add_option("--stiff", options->stiff,
+  command.add_option("--stiff", options.stiff,
                      "Fingers that cannot reach the poses, e.g. thumb,index, or wrist: they go as "
                      "far as they can, and only their flat hand is used");
-  command.add_option("--from", options->from,
+  command.add_option("--from", options.from,
                      "A capture instead of a glove: the output of `nendo monitor --json` while the "
                      "poses are held one after another, three seconds each");
-  command.add_millimetres("--hand-length", options->length_mm,
+  command.add_millimetres("--hand-length", options.length_mm,
                           "Millimetres from the wrist's crease to the tip of the middle finger");
-  command.add_millimetres("--hand-breadth", options->breadth_mm, "Millimetres across the knuckles");
-  command.add_option("--out", options->out,
+  command.add_millimetres("--hand-breadth", options.breadth_mm, "Millimetres across the knuckles");
+  command.add_option("--out", options.out,
                      "Where to write the calibration; without it, where other commands find it");
-  command.add_option("--picture", options->picture, "Also draw ranges and residuals, as FILE.svg");
-  command.add_flag("--fresh", options->fresh, "Do not continue a session that was quit");
+  command.add_option("--picture", options.picture, "Also draw ranges and residuals, as FILE.svg");
+  command.add_flag("--fresh", options.fresh, "Do not continue a session that was quit");
   std::string footer = "The poses, in their order:\n";
   for (const auto id : hand::full_poses())
     footer += "  " + std::string(hand::pose_of(id).name) + ": " +
@@ -376,5 +375,4 @@ void nendo::app::add_calibrate(cli::Command& program) {
     footer += " " + std::string(hand::pose_of(id).name);
   command.set_footer(footer + ".\nThe other commands use the calibration automatically; `nendo "
                               "calibration` lists, compares and exports calibrations.");
-  command.on_chosen([options] { return calibrate_command::calibrate(*options); });
 }

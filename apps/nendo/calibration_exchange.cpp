@@ -3,7 +3,6 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -184,30 +183,27 @@ Result<void> export_calibration(const ExportOptions& options) {
 
 void nendo::app::add_calibration_exchange(cli::Command& calibration) {
   using namespace calibration_exchange;
-  auto in = std::make_shared<ImportOptions>();
   cli::Command importing =
       calibration.add_command("import", "Stores another program's calibration");
+  ImportOptions& in = importing.on_chosen<ImportOptions>(import_calibration);
   importing.set_footer(
       "Reads TOML, VirtualHand's .cal (also of the Device Configuration Utility and\n"
       "of MotorControl), asr_cyberglove's two-point .cal, CSV, and the YAML and XML of ROS\n"
       "drivers (cyberglove_calibration).");
-  importing.add_option("FILE", in->file, "The file to read").required();
-  importing.add_option("--user", in->user, "The wearer; a TOML file names it");
-  importing.add_option("--hand", in->hand, "left or right; a TOML file names it")
+  importing.add_option("FILE", in.file, "The file to read").required();
+  importing.add_option("--user", in.user, "The wearer; a TOML file names it");
+  importing.add_option("--hand", in.hand, "left or right; a TOML file names it")
       .one_of({"left", "right"});
-  importing.add_option("--glove", in->glove,
-                       "The glove's serial number; without it, for any glove");
-  importing.add_option("--model", in->model, "The glove's model, as `nendo info` shows it");
-  importing.on_chosen([in] { return import_calibration(*in); });
+  importing.add_option("--glove", in.glove, "The glove's serial number; without it, for any glove");
+  importing.add_option("--model", in.model, "The glove's model, as `nendo info` shows it");
 
-  auto out = std::make_shared<ExportOptions>();
   cli::Command exporting =
       calibration.add_command("export", "Writes a calibration for other programs");
-  exporting.add_option("NAME", out->name, "Path, stored name or wearer").required();
+  ExportOptions& out = exporting.on_chosen<ExportOptions>(export_calibration);
+  exporting.add_option("NAME", out.name, "Path, stored name or wearer").required();
   exporting
-      .add_option("--format", out->format,
+      .add_option("--format", out.format,
                   "cal, csv, toml, or the formats of ROS drivers: yaml, xml")
       .one_of({"cal", "csv", "toml", "yaml", "xml"});
-  exporting.add_option("--out", out->out, "Where to write it; without it, standard output");
-  exporting.on_chosen([out] { return export_calibration(*out); });
+  exporting.add_option("--out", out.out, "Where to write it; without it, standard output");
 }

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -218,22 +217,21 @@ int cut_files(const Options& options) {
 
 void nendo::app::add_cut(cli::Command& program) {
   using namespace cut_command;
-  auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "cut", "Cuts closed models apart by a plane or a wire; the parts are closed again");
-  command.add_option("MODEL", options->models, "OBJ, PLY, STL or glTF files").required();
-  command.add_option("--plane", options->plane,
+  Options& options = command.on_chosen<Options>(cut_files);
+  command.add_option("MODEL", options.models, "OBJ, PLY, STL or glTF files").required();
+  command.add_option("--plane", options.plane,
                      "X,Y,Z,NX,NY,NZ: a point of the plane and its normal, in the model's units");
-  command.add_option("--wire", options->wire,
+  command.add_option("--wire", options.wire,
                      "Text file with the positions of a wire, one per line, in order: X,Y,Z,X,Y,Z "
                      "of its two ends, in the model's units; lines that begin with # are skipped");
-  options->output.add_to(
+  options.output.add_to(
       command, "Where to write the parts, .obj, .ply or .stl: %d becomes the part's number, from "
                "1, and %s the model's name; without %d all parts are written into one file");
-  command.add_option("--edge", options->edge,
+  command.add_option("--edge", options.edge,
                      "Length of the cut faces' edges; without it, about that of the faces which "
                      "the blade crosses");
-  command.add_flag("--repair", options->repair,
+  command.add_flag("--repair", options.repair,
                    "Repair a model that is not closed before the cut, as `nendo repair` does");
-  command.on_chosen([options] { return cut_files(*options); });
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -206,25 +205,24 @@ Result<void> deform_file(const Options& options) {
 
 void nendo::app::add_deform(cli::Command& program) {
   using namespace deform_command;
-  auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("deform", "Deforms a mesh by control vectors of a file");
-  command.add_option("MESH", options->mesh, "OBJ, PLY, STL or glTF file").required();
+  Options& options = command.on_chosen<Options>(deform_file);
+  command.add_option("MESH", options.mesh, "OBJ, PLY, STL or glTF file").required();
   command
-      .add_option("--vectors", options->vectors,
+      .add_option("--vectors", options.vectors,
                   "CSV file: x,y,z,dx,dy,dz[,radius], one control vector per line")
       .required();
-  command.add_option("--radius", options->radius,
+  command.add_option("--radius", options.radius,
                      "Radius of the supports, in the mesh's units, or several with weights for a "
                      "kernel that is their sum: 10+40:0.5; a radius column takes precedence");
   command.add_option(
-      "--common-radius", options->common_radius,
+      "--common-radius", options.common_radius,
       "Radius that all control vectors share, in addition to those of a radius column, so "
       "that there is always a solution; without it, the smallest of them with weight 0.01");
-  options->settings.add(command, flow::setting::kernel);
-  session::add_polynomial_option(command, options->polynomial);
-  options->settings.add(command, flow::setting::keep_volume);
-  options->settings.add(command, flow::setting::injective);
-  options->output.add_to(command, "Where to write the result, .obj, .ply or .stl");
-  command.on_chosen([options] { return deform_file(*options); });
+  options.settings.add(command, flow::setting::kernel);
+  session::add_polynomial_option(command, options.polynomial);
+  options.settings.add(command, flow::setting::keep_volume);
+  options.settings.add(command, flow::setting::injective);
+  options.output.add_to(command, "Where to write the result, .obj, .ply or .stl");
 }

@@ -282,22 +282,21 @@ Result<void> demonstrate(const Options& options) {
 
 void nendo::app::add_demo(cli::Command& program) {
   using namespace demo_command;
-  auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "demo", "Two emulated CyberGloves play a face, or shape a Moai, through the real driver, or "
               "simulated hands knead clay; writes a picture, a recording and an animation");
+  Options& options = command.on_chosen<Options>(demonstrate);
   command.add_option(
-      "DEMO", options->what,
+      "DEMO", options.what,
       "face: ten fingers animate it; moai: hands shape it; clay: whole hands make a "
       "cake, a bowl and ears, in about 30 s, for which only --out and --picture apply");
   command.add_option(
-      "--mode", options->mode,
+      "--mode", options.mode,
       "type1 (from rest): the rest shape follows the fingertips; type2 (accumulating): strokes");
-  command.add_duration("--duration", options->duration_s, "How long, e.g. 30s or 2m, up to 1h");
-  command.add_option("--out", options->out, "Where the shape goes, .obj, .ply or .stl");
-  command.add_option("--picture", options->picture, "Where the picture goes, .png");
+  command.add_duration("--duration", options.duration_s, "How long, e.g. 30s or 2m, up to 1h");
+  command.add_option("--out", options.out, "Where the shape goes, .obj, .ply or .stl");
+  command.add_option("--picture", options.picture, "Where the picture goes, .png");
   command.add_option(
-      "--record", options->record,
+      "--record", options.record,
       "Where the recording goes; without it, beside --out, replacing that of an earlier demo");
-  command.on_chosen([options] { return demonstrate(*options); });
 }

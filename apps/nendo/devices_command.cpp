@@ -5,7 +5,6 @@
 #include <chrono>
 #include <ctime>
 #include <iostream>
-#include <memory>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -22,6 +21,11 @@ namespace {
 
 using driver::GloveCandidate;
 using nlohmann::ordered_json;
+
+struct Options {
+  bool json = false;
+  bool watch = false;
+};
 
 ordered_json json_of(const driver::UsbIdentity& usb) {
   return {{"vendor_id", fmt::format("{:04x}", usb.vendor_id)},
@@ -139,22 +143,19 @@ Result<void> watch_devices(bool json) {
   return {};
 }
 
+Result<void> devices(const Options& options) {
+  return options.watch ? watch_devices(options.json) : list_devices(options.json);
+}
+
 } // namespace
 } // namespace nendo::app::devices_command
 
 void nendo::app::add_devices(cli::Command& program) {
   using namespace devices_command;
-  struct Options {
-    bool json = false;
-    bool watch = false;
-  };
-  auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("devices", "Lists ports and USB devices that can be gloves, and why");
-  command.add_flag("--json", options->json, "One JSON object per line");
-  command.add_flag("--watch", options->watch,
+  Options& options = command.on_chosen<Options>(devices);
+  command.add_flag("--json", options.json, "One JSON object per line");
+  command.add_flag("--watch", options.watch,
                    "Then print a line when a device is plugged in or unplugged, until Ctrl-C");
-  command.on_chosen([options] {
-    return options->watch ? watch_devices(options->json) : list_devices(options->json);
-  });
 }

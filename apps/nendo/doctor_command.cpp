@@ -4,7 +4,6 @@
 #include <array>
 #include <iostream>
 #include <iterator>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,6 +22,11 @@
 
 namespace nendo::app::doctor_command {
 namespace {
+
+struct Options {
+  std::string glove; ///< empty: each identified one
+  bool json = false;
+};
 
 /// Finds sensors that were stuck during a calibration.
 doctor::Examination check_calibrations() {
@@ -94,16 +98,16 @@ void print_text(const doctor::Finding& finding) {
             << '\n';
 }
 
-int examine(const std::string& glove, bool json) {
+int examine(const Options& options) {
   std::vector<doctor::Finding> findings;
   std::string looked_at;
   std::vector<doctor::Examination> examinations;
   for (const auto check : subjects)
     examinations.push_back(check());
-  if (glove.empty()) {
+  if (options.glove.empty()) {
     examinations.push_back(check_known_gloves());
   } else {
-    auto examined = check_glove(glove);
+    auto examined = check_glove(options.glove);
     if (!examined) return cli::report(examined.error());
     examinations.push_back(*std::move(examined));
   }
@@ -118,9 +122,9 @@ int examine(const std::string& glove, bool json) {
         return a.severity == doctor::Severity::failure && b.severity == doctor::Severity::warning;
       });
   for (const doctor::Finding& finding : findings)
-    json ? print_json(finding) : print_text(finding);
-  if (findings.empty() && !json) std::cout << "No problems found.\n";
-  if (!json) std::cout << "Checked: " << looked_at << ".\n";
+    options.json ? print_json(finding) : print_text(finding);
+  if (findings.empty() && !options.json) std::cout << "No problems found.\n";
+  if (!options.json) std::cout << "Checked: " << looked_at << ".\n";
   const bool well = findings.empty() || findings.front().severity == doctor::Severity::warning;
   return well ? 0 : static_cast<int>(Errc::failed);
 }
@@ -130,15 +134,13 @@ int examine(const std::string& glove, bool json) {
 
 void nendo::app::add_doctor(cli::Command& program) {
   using namespace doctor_command;
-  auto json = std::make_shared<bool>(false);
-  auto glove = std::make_shared<std::string>();
   cli::Command command = program.add_command(
       "doctor", "Finds problems with gloves on this machine, and how to fix them");
+  Options& options = command.on_chosen<Options>(examine);
   command.add_option(
-      "GLOVE", *glove,
+      "GLOVE", options.glove,
       "Also check the sensors of this glove: serial:/dev/ttyUSB0, auto, ...; without it, those "
       "of each identified glove");
-  command.add_flag("--json", *json, "One JSON object per finding");
+  command.add_flag("--json", options.json, "One JSON object per finding");
   command.set_footer("Exit code 1 if there is a failure, 0 if there are only warnings.");
-  command.on_chosen([json, glove] { return examine(*glove, *json); });
 }

@@ -232,20 +232,19 @@ void add_cyberglove_options(cli::Command command, Options& options) {
 
 void nendo::app::add_emulate(cli::Command& program) {
   using namespace emulate_command;
-  auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "emulate", "Emulates a glove's electronics on a pseudo-terminal, for tests");
+  Options& options = command.on_chosen<Options>(emulate);
   command
-      .add_option("--link", options->emulator.link,
+      .add_option("--link", options.emulator.link,
                   "Symbolic link to make to the pseudo-terminal, e.g. /tmp/glove")
       .required();
-  command.add_duration("--duration", options->duration_s,
+  command.add_duration("--duration", options.duration_s,
                        "How long, e.g. 30s or 10m; 0: until Ctrl-C");
-  command.add_option("--fault", options->emulator.faults, "A fault, see below").once_each("FAULT");
-  command.add_option("--log", options->emulator.log,
+  command.add_option("--fault", options.emulator.faults, "A fault, see below").once_each("FAULT");
+  command.add_option("--log", options.emulator.log,
                      "Write all traffic to this file, one line per message");
-  add_glove_options(command.under("The glove"), *options);
-  add_cyberglove_options(command.under("CyberGlove only"), *options);
+  add_glove_options(command.under("The glove"), options);
+  add_cyberglove_options(command.under("CyberGlove only"), options);
   command.set_footer(variants_explained() + faults_explained());
-  command.on_chosen([options] { return emulate(*options); });
 }

@@ -339,40 +339,39 @@ Result<void> export_command(const Options& options) {
 
 void nendo::app::add_export(cli::Command& program) {
   using namespace export_command;
-  auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "export", "Writes a recording as animation or tables: glTF, point caches, meshes, BVH, CSV");
+  Options& options = command.on_chosen<Options>(export_command::export_command);
   command.set_footer(
       "A recording of `nendo record` has hands and no model: .csv (every sample: counts, angles, "
       "both\nclocks), .bvh and .glb.");
   command
-      .add_option("TAKE", options->file,
+      .add_option("TAKE", options.file,
                   "A recording of `nendo run` or `nendo record`, or a timeline of `nendo edit`")
       .required();
   command
-      .add_option("--out", options->out,
+      .add_option("--out", options.out,
                   "Where to write: .glb (model and hands), .pc2 or .mdd (the model's vertices), "
                   "NAME-%04d.obj, .ply or .stl (one mesh per frame), .bvh (one file per hand), "
                   ".csv (angles and "
                   "fingertips)")
       .required();
-  command.add_option("--format", options->format, "Format, if the name's ending does not say it")
+  command.add_option("--format", options.format, "Format, if the name's ending does not say it")
       .one_of({"glb", "pc2", "mdd", "obj", "ply", "stl", "bvh", "csv"});
-  command.add_rate("--rate", options->rate_hz,
+  command.add_rate("--rate", options.rate_hz,
                    "Frames per second, each the nearest of the take; without it, .csv has every "
                    "frame at its own time, .bvh the take's rate, and other formats 24");
-  command.add_flag("--every-frame", options->every_frame,
+  command.add_flag("--every-frame", options.every_frame,
                    ".glb: every frame of the take, at its own time");
-  command.add_flag("--samples", options->samples,
+  command.add_flag("--samples", options.samples,
                    ".csv: one row per sample of the gloves in place of one per frame");
-  command.add_duration("--from", options->from_s, "Seconds from the beginning");
-  command.add_duration("--to", options->to_s, "Seconds from the beginning at which it ends");
-  command.add_option("--mesh", options->mesh, "The model, if it has been moved");
+  command.add_duration("--from", options.from_s, "Seconds from the beginning");
+  command.add_duration("--to", options.to_s, "Seconds from the beginning at which it ends");
+  command.add_option("--mesh", options.mesh, "The model, if it has been moved");
   command.add_option(
-      "--tolerance", options->tolerance,
+      "--tolerance", options.tolerance,
       ".glb: max error of vertices where key shapes are needed: a length on the stage "
       "like 1mm, or a fraction of the model's diagonal like 0.01 or 1%");
-  command.add_flag("--no-hands", options->no_hands, ".glb: only the model");
-  command.add_flag("--json", options->json, "A summary as JSON");
-  command.on_chosen([options] { return export_command::export_command(*options); });
+  command.add_flag("--no-hands", options.no_hands, ".glb: only the model");
+  command.add_flag("--json", options.json, "A summary as JSON");
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +23,11 @@ namespace nendo::app::info_command {
 namespace {
 
 using nlohmann::ordered_json;
+
+struct Options {
+  std::string glove;
+  bool json = false;
+};
 
 std::vector<std::string> names_of(SensorMask mask) {
   std::vector<std::string> names;
@@ -162,11 +166,11 @@ void print_text(const driver::GloveInfo& info, const std::vector<gloves::SensorA
     columns.print(name, value);
 }
 
-Result<void> info(const std::string& spec, bool json) {
-  const auto glove = gloves::open_glove(spec);
+Result<void> info(const Options& options) {
+  const auto glove = gloves::open_glove(options.glove);
   if (!glove) return glove.error();
   const auto at_end = gloves::sensors_at_end(**glove);
-  json ? print_json((*glove)->info(), at_end) : print_text((*glove)->info(), at_end);
+  options.json ? print_json((*glove)->info(), at_end) : print_text((*glove)->info(), at_end);
   return {};
 }
 
@@ -175,13 +179,8 @@ Result<void> info(const std::string& spec, bool json) {
 
 void nendo::app::add_info(cli::Command& program) {
   using namespace info_command;
-  struct Options {
-    std::string glove;
-    bool json = false;
-  };
-  auto options = std::make_shared<Options>();
   cli::Command command = program.add_command("info", "Queries a glove: model, sensors, abilities");
-  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
-  command.add_flag("--json", options->json, "One JSON object");
-  command.on_chosen([options] { return info(options->glove, options->json); });
+  Options& options = command.on_chosen<Options>(info);
+  command.add_option("GLOVE", options.glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
+  command.add_flag("--json", options.json, "One JSON object");
 }

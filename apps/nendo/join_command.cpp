@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <iostream>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -97,15 +96,14 @@ Result<void> join_files(const Options& options) {
 
 void nendo::app::add_join(cli::Command& program) {
   using namespace join_command;
-  auto options = std::make_shared<Options>();
   cli::Command command = program.add_command("join", "Joins models that overlap into one, exactly");
+  Options& options = command.on_chosen<Options>(join_files);
   command
-      .add_option("PART", options->parts,
+      .add_option("PART", options.parts,
                   "OBJ, PLY, STL or glTF files of closed models; of one file, its parts are joined")
       .required();
-  command.add_option("--seam", options->seam,
+  command.add_option("--seam", options.seam,
                      "Width of the blend on each side of the seam, in the models' units; 0 leaves "
                      "the seam sharp");
-  options->output.add_to(command, "Where to write the result, .obj, .ply or .stl");
-  command.on_chosen([options] { return join_files(*options); });
+  options.output.add_to(command, "Where to write the result, .obj, .ply or .stl");
 }

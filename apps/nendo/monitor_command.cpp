@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -201,10 +200,10 @@ Result<void> monitor(const Options& options) {
 
 void nendo::app::add_monitor(cli::Command& program) {
   using namespace monitor_command;
-  auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "monitor",
       "Shows what a glove sends: bars in a terminal, JSON lines when piped or asked for");
+  Options& options = command.on_chosen<Options>(monitor);
   command.set_footer(
       "In a bar, # shows the count, and [ ] the min and max so far.\n"
       "A ~ before degrees: the glove is uncalibrated, and they are those of an average hand.\n"
@@ -215,10 +214,9 @@ void nendo::app::add_monitor(cli::Command& program) {
       "records were\nlost on the line; \"refused\" ones did not fit into this program's buffer. If "
       "the losses of a glove\ncannot be counted, its rate is shown if it is too low. Values out of "
       "range are clamped.");
-  command.add_option("GLOVE", options->glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
-  command.add_flag("--json", options->json, "One JSON object per line, also in a terminal");
-  command.add_flag("--raw", options->raw, "Raw counts only, no angles");
-  gloves::add_calibration_options(command, options->calibration, false);
-  command.add_option("--count", options->count, "End after this number of samples");
-  command.on_chosen([options] { return monitor(*options); });
+  command.add_option("GLOVE", options.glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
+  command.add_flag("--json", options.json, "One JSON object per line, also in a terminal");
+  command.add_flag("--raw", options.raw, "Raw counts only, no angles");
+  gloves::add_calibration_options(command, options.calibration, false);
+  command.add_option("--count", options.count, "End after this number of samples");
 }

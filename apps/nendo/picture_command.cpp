@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -286,41 +285,40 @@ Result<void> draw_picture(const PictureOptions& options, const takes::Take& take
 
 void nendo::app::add_picture(cli::Command& program) {
   using namespace picture_command;
-  auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("picture", "Draws a model or a recording as a PNG, without a screen");
+  Options& options = command.on_chosen<Options>(make_picture);
   command
-      .add_option("FILE", options->file,
+      .add_option("FILE", options.file,
                   "OBJ, PLY, STL or glTF file, or a recording of `nendo run --record`")
       .required();
-  command.add_option("--out", options->out, "Where to write the picture, .png").required();
-  takes::add_up_option(command, options->up);
-  command.add_option("--mesh", options->mesh, "Recordings: the model, if it has been moved");
-  command.add_option("--camera", options->view,
+  command.add_option("--out", options.out, "Where to write the picture, .png").required();
+  takes::add_up_option(command, options.up);
+  command.add_option("--mesh", options.mesh, "Recordings: the model, if it has been moved");
+  command.add_option("--camera", options.view,
                      "front, back, left, right, side, top, or AZIMUTH,ELEVATION in degrees");
-  command.add_option("--pixels", options->size, "WIDTHxHEIGHT in pixels, of each picture");
-  command.add_option("--turntable", options->turntable,
+  command.add_option("--pixels", options.size, "WIDTHxHEIGHT in pixels, of each picture");
+  command.add_option("--turntable", options.turntable,
                      "Number of pictures from all sides, on one sheet");
-  command.add_option("--time", options->times,
+  command.add_option("--time", options.times,
                      "Recordings: the time, or times T,T,..., in seconds, on one sheet");
-  command.add_flag("--glove-time", options->by_glove_time,
+  command.add_flag("--glove-time", options.by_glove_time,
                    "--time counts from the first sample of the gloves, when their motion began, "
                    "and not from the beginning of the recording");
-  command.add_option("--key-poses", options->key_poses,
+  command.add_option("--key-poses", options.key_poses,
                      "Recordings: number of poses that differ the most, on one sheet");
-  command.add_option("--captions", options->captions,
+  command.add_option("--captions", options.captions,
                      "Captions of the pictures, separated by commas");
-  command.add_option("--strip", options->strip,
+  command.add_option("--strip", options.strip,
                      "Recordings: number of pictures from beginning to end, on one sheet");
-  command.add_option("--columns", options->columns, "Pictures per row of the sheet");
+  command.add_option("--columns", options.columns, "Pictures per row of the sheet");
   command.add_option(
-      "--colour", options->colour,
+      "--colour", options.colour,
       "model: the model's colours; distance: recordings: the displacement from rest, "
       "from grey to dark red");
-  command.add_flag("--numbered", options->numbered,
+  command.add_flag("--numbered", options.numbered,
                    "Write one file per picture in place of a sheet: FILE-00.png and so on");
-  command.add_flag("--contact", options->parts.contacts,
+  command.add_flag("--contact", options.parts.contacts,
                    "Recordings: show where hands touch clay, and how hard");
-  command.add_flag("--no-hands", options->no_hands, "Recordings: do not draw the hands");
-  command.on_chosen([options] { return make_picture(*options); });
+  command.add_flag("--no-hands", options.no_hands, "Recordings: do not draw the hands");
 }

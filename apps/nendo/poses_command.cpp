@@ -329,29 +329,28 @@ Result<void> poses(const Options& options) {
 
 void nendo::app::add_poses(cli::Command& program) {
   using namespace poses_command;
-  auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "poses", "Writes hands' poses: OpenXR's 26 joints as JSON lines, or a BVH file");
+  Options& options = command.on_chosen<Options>(poses);
   command.set_footer(
       "A glove measures no position: the forearm ends at the origin, -Z points to the fingertips, "
       "+Y\nout of the back of the hand. JSON is in metres, with quaternions x, y, z, w; BVH in "
       "centimetres\nand degrees, and named FILE.part until it is complete. time_s is the time of "
       "the "
       "sample or,\nwith --rate, of the pose.");
-  command.add_option("GLOVE", options->gloves, "One or two: serial:/dev/ttyUSB0, sim, auto, ...")
+  command.add_option("GLOVE", options.gloves, "One or two: serial:/dev/ttyUSB0, sim, auto, ...")
       .required();
-  command.add_option("--bvh", options->bvh,
+  command.add_option("--bvh", options.bvh,
                      "Write this file instead of JSON lines; with two gloves, FILE-left.bvh and "
                      "FILE-right.bvh");
-  command.add_rate("--rate", options->rate_hz,
+  command.add_rate("--rate", options.rate_hz,
                    "Poses per second, 1 to 10000, each of the newest sample; without it, one per "
                    "sample, and 90 per second in a BVH file");
-  command.add_duration("--duration", options->duration_s,
+  command.add_duration("--duration", options.duration_s,
                        "How long, e.g. 30s or 10m; 0: until Ctrl-C, or until a "
                        "recording (replay:FILE) ends");
-  command.add_option("--count", options->count,
+  command.add_option("--count", options.count,
                      "End after this number of poses, both gloves together");
-  gloves::add_hand_length(command, options->length);
-  gloves::add_calibration_options(command, options->calibration, true);
-  command.on_chosen([options] { return poses(*options); });
+  gloves::add_hand_length(command, options.length);
+  gloves::add_calibration_options(command, options.calibration, true);
 }

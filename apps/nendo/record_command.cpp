@@ -1,6 +1,5 @@
 // nendo record: records what gloves send.
 
-#include <memory>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -130,20 +129,18 @@ int record(Options& options) {
 
 void nendo::app::add_record(cli::Command& program) {
   using namespace record_command;
-  auto options = std::make_shared<Options>();
   cli::Command command = program.add_command("record", "Records what gloves send");
+  Options& options = command.on_chosen<Options>(record);
   command.set_footer(
       "A recording can be used as a glove: replay:FILE. `nendo run --record` records "
       "a whole run, so that it can be replayed to the same shape.");
-  command
-      .add_option("GLOVE", options->gloves, "One, or one for each hand: serial:/dev/ttyUSB0, sim")
+  command.add_option("GLOVE", options.gloves, "One, or one for each hand: serial:/dev/ttyUSB0, sim")
       .required();
-  command.add_option("--out", options->out, "The recording, a new file").required();
-  command.add_duration("--duration", options->duration_s,
+  command.add_option("--out", options.out, "The recording, a new file").required();
+  command.add_duration("--duration", options.duration_s,
                        "How long, e.g. 30s or 10m; 0: until Ctrl-C, or until the gloves end, "
                        "as replay:FILE does");
-  gloves::add_calibration_options(command, options->calibration, true);
-  gloves::add_hand_length(command, options->length);
-  command.add_flag("--json", options->json, "A summary as one JSON object");
-  command.on_chosen([options] { return record(*options); });
+  gloves::add_calibration_options(command, options.calibration, true);
+  gloves::add_hand_length(command, options.length);
+  command.add_flag("--json", options.json, "A summary as one JSON object");
 }

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -87,15 +86,14 @@ Result<void> repair_file(const Options& options) {
 
 void nendo::app::add_repair(cli::Command& program) {
   using namespace repair_command;
-  auto options = std::make_shared<Options>();
   cli::Command command = program.add_command(
       "repair", "Makes a model closed, so that it can be cut, joined and refined: joins, removes, "
                 "turns, separates and fills, and reports each change");
-  command.add_option("MODEL", options->model, "OBJ, PLY, STL or glTF file").required();
-  options->output.add_to(command, "Where to write the repaired model, .obj, .ply or .stl");
-  command.add_option("--tolerance", options->tolerance,
+  Options& options = command.on_chosen<Options>(repair_file);
+  command.add_option("MODEL", options.model, "OBJ, PLY, STL or glTF file").required();
+  options.output.add_to(command, "Where to write the repaired model, .obj, .ply or .stl");
+  command.add_option("--tolerance", options.tolerance,
                      "Max distance of vertices at open edges that become one, in the model's "
                      "units; without it, a hundred-thousandth of the model's diagonal");
-  command.add_flag("--json", options->json, "Report as one JSON object");
-  command.on_chosen([options] { return repair_file(*options); });
+  command.add_flag("--json", options.json, "Report as one JSON object");
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <memory>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -212,19 +211,18 @@ Result<void> replay(const Options& options) {
 
 void nendo::app::add_replay(cli::Command& program) {
   using namespace replay_command;
-  auto options = std::make_shared<Options>();
   cli::Command command =
       program.add_command("replay", "Replays a recorded run: the same shape, bit for bit");
-  command.add_option("FILE", options->file, "A recording of `nendo run --record`").required();
-  command.add_option("--speed", options->speed, "Speed relative to real time, 0.01 to 100");
-  command.add_flag("--no-clock", options->no_clock, "As fast as possible");
-  command.add_flag("--loop", options->loops, "Repeat until Ctrl-C");
+  Options& options = command.on_chosen<Options>(replay);
+  command.add_option("FILE", options.file, "A recording of `nendo run --record`").required();
+  command.add_option("--speed", options.speed, "Speed relative to real time, 0.01 to 100");
+  command.add_flag("--no-clock", options.no_clock, "As fast as possible");
+  command.add_flag("--loop", options.loops, "Repeat until Ctrl-C");
   command.add_duration(
-      "--from", options->from_s,
+      "--from", options.from_s,
       "Seconds from the beginning; everything before is replayed as fast as possible");
-  command.add_duration("--to", options->to_s, "Seconds from the beginning at which it ends");
-  command.add_option("--mesh", options->mesh, "The model, if it has been moved");
-  command.add_option("--out", options->out, "Where to write the shape, .obj, .ply or .stl");
-  command.add_flag("--json", options->json, "A summary as JSON");
-  command.on_chosen([options] { return replay(*options); });
+  command.add_duration("--to", options.to_s, "Seconds from the beginning at which it ends");
+  command.add_option("--mesh", options.mesh, "The model, if it has been moved");
+  command.add_option("--out", options.out, "Where to write the shape, .obj, .ply or .stl");
+  command.add_flag("--json", options.json, "A summary as JSON");
 }

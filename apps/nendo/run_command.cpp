@@ -269,19 +269,27 @@ std::vector<std::string> decided_by_take() {
   return options;
 }
 
-void add_run_options(cli::Command& command, const std::shared_ptr<RunArguments>& options) {
-  session::RunOptions& run_options = options->run;
-  add_shape_options(command, *options);
+/// Makes the options of a command that runs.
+RunArguments& options_for(cli::Command& command) {
+  return command.on_chosen<RunArguments>([command](RunArguments& options) {
+    options.decided_by_take = command.first_given(decided_by_take());
+    return run(options);
+  });
+}
+
+void add_run_options(cli::Command& command, RunArguments& options) {
+  session::RunOptions& run_options = options.run;
+  add_shape_options(command, options);
   command.add_rate("--rate", run_options.loop.rate_hz, "Ticks per second, 1 to 10000");
-  options->loop.add_to(command);
-  command.add_option("--switch", options->switch_action,
+  options.loop.add_to(command);
+  command.add_option("--switch", options.switch_action,
                      "Action of the wrist switch. grab: the hands hold the model while it is on; "
                      "commit: keeps the shape so far; toggle: releases and grabs; keep: saves the "
                      "last seconds (--keep-last)");
   session::add_recording_options(command, run_options.recording);
-  session::add_overdub_options(command, options->overdub);
-  options->settings.add_filter(command);
-  session::add_publish_option(command, options->publish);
+  session::add_overdub_options(command, options.overdub);
+  options.settings.add_filter(command);
+  session::add_publish_option(command, options.publish);
   command.add_duration(
       "--duration", run_options.duration_s,
       "How long, e.g. 30s or 10m; 0: until Ctrl-C, or until the end of the gloves' "
@@ -292,29 +300,25 @@ void add_run_options(cli::Command& command, const std::shared_ptr<RunArguments>&
   command.add_option(
       "--out", run_options.out,
       "Where to write the shape, .obj, .ply or .stl; without it, nendo-<date>-<time>.obj");
-  command.add_flag("--force", options->force, cli::force_summary);
+  command.add_flag("--force", options.force, cli::force_summary);
   command.add_option("--picture", run_options.picture,
                      "Where to draw the model and the hands before and after, .png");
   command.add_flag("--json", run_options.json, "Progress and summary as JSON, one object per line");
   command.add_flag("--verbose", run_options.verbose, "A longer summary, with figures about folds");
   command.add_option(
-      "--web", options->web,
+      "--web", options.web,
       "[ADDR:]PORT at which a browser shows and controls the run; without ADDR, only a "
       "browser on this machine");
   command.add_option(
-      "--out-puppet", options->out_puppet,
+      "--out-puppet", options.out_puppet,
       "Where the window saves an edited puppet, .toml; without it, the file that was "
       "opened, or one in the current folder, named after the model");
-  command.add_option("--screenshot", options->view.screenshot,
+  command.add_option("--screenshot", options.view.screenshot,
                      "Where the window's last picture goes, .png");
-  command.add_flag("--contact", options->view.contact,
+  command.add_flag("--contact", options.view.contact,
                    "The window shows where hands touch clay, and how hard; key 0 switches it");
-  command.add_option("--frames", options->view.frames,
+  command.add_option("--frames", options.view.frames,
                      "Number of the window's pictures after which the run ends; 0: no limit");
-  command.on_chosen([options, command] {
-    options->decided_by_take = command.first_given(decided_by_take());
-    return run(*options);
-  });
 }
 
 } // namespace
@@ -322,17 +326,17 @@ void add_run_options(cli::Command& command, const std::shared_ptr<RunArguments>&
 
 void nendo::app::add_run(cli::Command& program) {
   using namespace run_command;
-  auto options = std::make_shared<RunArguments>();
   cli::Command command = program.add_command("run", "Shapes a model with one or two gloves");
-  command.add_flag("--view", options->view.window, "Open the live window, as `nendo view` does");
+  RunArguments& options = options_for(command);
+  command.add_flag("--view", options.view.window, "Open the live window, as `nendo view` does");
   add_run_options(command, options);
 }
 
 void nendo::app::add_view(cli::Command& program) {
   using namespace run_command;
-  auto options = std::make_shared<RunArguments>();
-  options->view.window = true;
   cli::Command command = program.add_command(
       "view", "Runs as `nendo run`, in a window with the model, the hands and a panel");
+  RunArguments& options = options_for(command);
+  options.view.window = true;
   add_run_options(command, options);
 }

@@ -135,42 +135,40 @@ void add_reports(cli::Command command, stress::StressArguments& arguments) {
 
 void nendo::app::add_stress(cli::Command& program) {
   using namespace stress_command;
-  auto arguments = std::make_shared<stress::StressArguments>();
   cli::Command command = program.add_command(
       "stress",
       "Measures jitter and missed deadlines of the loop on this machine, and their causes");
+  auto& arguments = command.on_chosen<stress::StressArguments>(run);
   command.free_short_help();
   command.set_footer("It requests real-time rights and reports which were refused; without any, it "
                      "measures an ordinary thread.");
-  command.add_microseconds("-i,--interval", arguments->interval_us,
+  command.add_microseconds("-i,--interval", arguments.interval_us,
                            "From tick to tick, 100us to 1s; a bare number is microseconds");
-  command.add_option("-D,--duration", arguments->duration,
-                     "How long: seconds, or 90s, 10m, 2h, 1d");
-  command.add_option("--stages", arguments->stages,
+  command.add_option("-D,--duration", arguments.duration, "How long: seconds, or 90s, 10m, 2h, 1d");
+  command.add_option("--stages", arguments.stages,
                      "Stages of a tick: sleep, input, hands, deform, publish, separated by commas");
-  command.add_option("--load", arguments->load,
+  command.add_option("--load", arguments.load,
                      "Load by other processes: cpu, mem, io, separated by commas");
-  command.add_microseconds("-b,--break", arguments->break_us,
+  command.add_microseconds("-b,--break", arguments.break_us,
                            "End at a tick that is later than this, e.g. 200us; a bare number is "
                            "microseconds");
-  command.add_duration("--floor", arguments->floor_s,
+  command.add_duration("--floor", arguments.floor_s,
                        "Seconds to measure the machine alone first; 0: none");
-  command.add_option("--left", arguments->run.left,
+  command.add_option("--left", arguments.run.left,
                      "GLOVE on the left hand; without any, two simulated gloves");
-  command.add_option("--right", arguments->run.right, "GLOVE on the right hand");
-  command.add_option("MODEL,--mesh", arguments->run.mesh,
+  command.add_option("--right", arguments.run.right, "GLOVE on the right hand");
+  command.add_option("MODEL,--mesh", arguments.run.mesh,
                      "OBJ, PLY, STL or glTF file; without it, the shipped Moai");
-  takes::add_up_option(command, arguments->up);
-  session::add_setting(command, flow::setting::mode, arguments->mode);
+  takes::add_up_option(command, arguments.up);
+  session::add_setting(command, flow::setting::mode, arguments.mode);
   command.add_option(
-      "--changes", arguments->changes_per_minute,
+      "--changes", arguments.changes_per_minute,
       "Change the radius this number of times per minute, in every other second, and "
       "report the seconds with and without changes separately");
-  command.add_option(std::string(flow::setting::radius.option), arguments->radius,
+  command.add_option(std::string(flow::setting::radius.option), arguments.radius,
                      std::string(flow::setting::radius.help));
-  command.add_flag("--view", arguments->view,
+  command.add_flag("--view", arguments.view,
                    "Open the live window, to measure its effect on the loop");
-  arguments->loop.add_to(command, true);
-  add_reports(command.under("Report"), *arguments);
-  command.on_chosen([arguments] { return run(*arguments); });
+  arguments.loop.add_to(command, true);
+  add_reports(command.under("Report"), arguments);
 }

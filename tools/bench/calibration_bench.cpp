@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -133,22 +132,21 @@ int bench_calibration(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
       "calibration",
       "Measures the accuracy of guided calibration, on synthetic wearers with known joints");
-  command.add_option("--wearers", options->wearers, "Number of wearers, 1 to 10000");
-  command.add_option("--seed", options->seed,
+  Options& options = command.on_chosen<Options>(bench_calibration);
+  command.add_option("--wearers", options.wearers, "Number of wearers, 1 to 10000");
+  command.add_option("--seed", options.seed,
                      "Seed of the first wearer; 1 to 60 were used for tuning");
-  command.add_flag("--json", options->json, "One JSON object");
-  command.add_flag("--markdown", options->markdown, "A table in Markdown");
-  command.add_flag("--floor", options->floor,
+  command.add_flag("--json", options.json, "One JSON object");
+  command.add_flag("--markdown", options.markdown, "A table in Markdown");
+  command.add_flag("--floor", options.floor,
                    "With --judge: also report the floor, the accuracy of an estimator that has the "
                    "true hand and the form of the errors");
-  command.add_option("--judge", options->judge,
+  command.add_option("--judge", options.judge,
                      "Calibrate the wearers of this file, which `nendo bench wearers` writes, in "
                      "place of new ones");
-  command.on_chosen([options] { return bench_calibration(*options); });
 }
 
 } // namespace nendo::bench::calibration_bench

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <map>
-#include <memory>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -148,21 +147,20 @@ int bench_clay(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command =
       bench.add_command("clay", "Measures clay that whole hands press, beside a plain program");
+  Options& options = command.on_chosen<Options>(bench_clay);
   command.add_option(
-      "--make", options->made_shape,
+      "--make", options.made_shape,
       "Knead a ball into a shape, and measure only that: cake, bowl, nose or sausage");
-  command.add_option("--save", options->save,
+  command.add_option("--save", options.save,
                      "Where to write the shape of --make, .obj, .ply or .stl");
-  command.add_flag("--refine", options->refines,
+  command.add_flag("--refine", options.refines,
                    "With --make: refine the triangles as the shape changes");
-  add_simd_option(command, options->simd);
-  command.add_option("--only", options->only, "Measure only rows with this in their names");
-  command.add_flag("--short", options->short_form, "Measure only a small ball");
-  command.add_flag("--json", options->json, "One JSON object per line");
-  command.on_chosen([options] { return bench_clay(*options); });
+  add_simd_option(command, options.simd);
+  command.add_option("--only", options.only, "Measure only rows with this in their names");
+  command.add_flag("--short", options.short_form, "Measure only a small ball");
+  command.add_flag("--json", options.json, "One JSON object per line");
 }
 
 } // namespace nendo::bench::clay_bench

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <memory>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -130,12 +129,11 @@ int run(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command =
       bench.add_command("cut", "Measures the time to cut models of 30,000 and 330,000 triangles");
-  command.add_option("--repetitions", options->repetitions, "Number of cuts of each kind");
-  command.add_flag("--json", options->json, "One JSON object per line");
-  command.on_chosen([options] { return run(*options); });
+  Options& options = command.on_chosen<Options>(run);
+  command.add_option("--repetitions", options.repetitions, "Number of cuts of each kind");
+  command.add_flag("--json", options.json, "One JSON object per line");
 }
 
 } // namespace nendo::bench::cut_bench

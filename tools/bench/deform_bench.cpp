@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 
 #include <nlohmann/json.hpp>
 
@@ -147,14 +146,13 @@ int bench_deform(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
       "deform", "Measures both types of deformation, beside a plain loop and the machine's floors");
-  add_simd_option(command, options->simd);
-  command.add_flag("--short", options->short_form,
+  Options& options = command.on_chosen<Options>(bench_deform);
+  add_simd_option(command, options.simd);
+  command.add_flag("--short", options.short_form,
                    "Measure only the two smaller meshes, with few repetitions");
-  command.add_flag("--json", options->json, "One JSON object per line");
-  command.on_chosen([options] { return bench_deform(*options); });
+  command.add_flag("--json", options.json, "One JSON object per line");
 }
 
 } // namespace nendo::bench::deform_bench

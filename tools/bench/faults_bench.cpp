@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
-#include <memory>
 
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
@@ -103,15 +102,14 @@ int bench_faults(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
       "faults",
       "Measures the records that each fault costs each CyberGlove, through the real driver");
-  command.add_duration("--seconds", options->seconds, "Seconds per case");
-  command.add_option("--at-once", options->at_once, "Number of cases that run at the same time");
-  command.add_flag("--json", options->json, "One JSON object per case");
-  command.add_flag("--markdown", options->markdown, "A table in Markdown");
-  command.on_chosen([options] { return bench_faults(*options); });
+  Options& options = command.on_chosen<Options>(bench_faults);
+  command.add_duration("--seconds", options.seconds, "Seconds per case");
+  command.add_option("--at-once", options.at_once, "Number of cases that run at the same time");
+  command.add_flag("--json", options.json, "One JSON object per case");
+  command.add_flag("--markdown", options.markdown, "A table in Markdown");
 }
 
 } // namespace nendo::bench::faults_bench

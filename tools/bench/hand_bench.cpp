@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <memory>
 #include <random>
 #include <string>
 #include <utility>
@@ -248,15 +247,14 @@ int bench_hand(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
       "hand",
       "Measures poses of both hands, beside plain products of matrices, and inverse kinematics");
-  command.add_option("--poses", options->poses, "Number of poses of both hands");
-  command.add_option("--solves", options->solves,
+  Options& options = command.on_chosen<Options>(bench_hand);
+  command.add_option("--poses", options.poses, "Number of poses of both hands");
+  command.add_option("--solves", options.solves,
                      "Number of hands to compute from their fingertips");
-  command.add_flag("--json", options->json, "One JSON object");
-  command.on_chosen([options] { return bench_hand(*options); });
+  command.add_flag("--json", options.json, "One JSON object");
 }
 
 } // namespace nendo::bench::hand_bench

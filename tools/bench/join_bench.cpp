@@ -1,7 +1,6 @@
 // nendo bench join: how long it takes to join two models.
 
 #include <cstdio>
-#include <memory>
 
 #include <nlohmann/json.hpp>
 
@@ -48,12 +47,11 @@ int bench_join(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
       "join", "Measures the join of two models, with a sharp and with a blended seam");
-  command.add_flag("--short", options->short_form, "Measure only small models, once");
-  command.add_flag("--json", options->json, "One JSON object per line");
-  command.on_chosen([options] { return bench_join(*options); });
+  Options& options = command.on_chosen<Options>(bench_join);
+  command.add_flag("--short", options.short_form, "Measure only small models, once");
+  command.add_flag("--json", options.json, "One JSON object per line");
 }
 
 } // namespace nendo::bench::join_bench

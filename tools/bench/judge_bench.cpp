@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <memory>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -203,19 +202,18 @@ int write_wearers(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
       "wearers",
       "Writes synthetic wearers of another model, for `nendo bench calibration --judge`");
-  command.add_option("--out", options->out, "The file to write, one JSON object per line");
-  command.add_option("--wearers", options->wearers, "Number of wearers, 1 to 10000");
-  command.add_option("--seed", options->seed,
+  Options& options = command.on_chosen<Options>(write_wearers);
+  command.add_option("--out", options.out, "The file to write, one JSON object per line");
+  command.add_option("--wearers", options.wearers, "Number of wearers, 1 to 10000");
+  command.add_option("--seed", options.seed,
                      "Seed of the first wearer; 1 to 300 were used for tuning");
-  command.add_option("--sensors", options->sensors,
+  command.add_option("--sensors", options.sensors,
                      "Number of sensors: 22, or 18 for a glove without DIP sensors");
-  command.add_option("--without", options->without, "An error term that these wearers do not have");
-  command.add_option("--only", options->only, "The only error term that they have, or none");
-  command.on_chosen([options] { return write_wearers(*options); });
+  command.add_option("--without", options.without, "An error term that these wearers do not have");
+  command.add_option("--only", options.only, "The only error term that they have, or none");
 }
 
 } // namespace wearers_bench

@@ -1,7 +1,6 @@
 // nendo bench driver: the driver's latency, beside that of the least that any program can do.
 
 #include <array>
-#include <memory>
 
 #include <nlohmann/json.hpp>
 
@@ -92,14 +91,13 @@ int bench_driver(DriverOptions& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<DriverOptions>();
   cli::Command command = bench.add_command(
       "driver",
       "Measures the latency of the CyberGlove driver, beside that of a bare poll()+read() thread");
-  command.add_option("--records", options->latency.records, "Number of records on each line");
-  command.add_rate("--rate", options->latency.rate_hz, "Records per second, 1 to 480");
-  command.add_flag("--json", options->json, "One JSON object per line");
-  command.on_chosen([options] { return bench_driver(*options); });
+  DriverOptions& options = command.on_chosen<DriverOptions>(bench_driver);
+  command.add_option("--records", options.latency.records, "Number of records on each line");
+  command.add_rate("--rate", options.latency.rate_hz, "Records per second, 1 to 480");
+  command.add_flag("--json", options.json, "One JSON object per line");
 }
 
 } // namespace nendo::bench::latency_bench

@@ -249,19 +249,18 @@ int run(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
       "models",
       "Measures the cost of a subdivided model for the tick that accepts it, and of its undo");
-  command.add_option("--cells", options->cells,
+  Options& options = command.on_chosen<Options>(run);
+  command.add_option("--cells", options.cells,
                      "Cells per side of the plane, before it is subdivided");
-  command.add_option("--repetitions", options->repetitions,
+  command.add_option("--repetitions", options.repetitions,
                      "Number of loops, of which the median is reported");
   command.add_option(
-      "--seconds", options->seconds,
+      "--seconds", options.seconds,
       "Seconds that a loop runs without, and then with changes of the radius; 0: none");
-  command.add_flag("--json", options->json, "One JSON object per line");
-  command.on_chosen([options] { return run(*options); });
+  command.add_flag("--json", options.json, "One JSON object per line");
 }
 
 } // namespace nendo::bench::models_bench

@@ -3,7 +3,6 @@
 #include "bench/rt_bench.hpp"
 
 #include <array>
-#include <memory>
 #include <string>
 
 #include "bench/bench.hpp"
@@ -41,17 +40,16 @@ int bench_rt(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command =
       bench.add_command("rt", "Measures rings, the hand-off of frames and the loop, beside other "
                               "implementations in the same run");
-  command.add_option("--part", options->part, "The part to measure")
+  Options& options = command.on_chosen<Options>(bench_rt);
+  command.add_option("--part", options.part, "The part to measure")
       .one_of({"all", "rings", "handoff", "loop"});
-  command.add_option("--rounds", options->rt.rounds,
+  command.add_option("--rounds", options.rt.rounds,
                      "Number of measurements of each ring and hand-off");
-  command.add_option("--seconds", options->rt.seconds, "Seconds per measurement of the loop");
-  command.add_flag("--json", options->rt.json, "One JSON object per line");
-  command.on_chosen([options] { return bench_rt(*options); });
+  command.add_option("--seconds", options.rt.seconds, "Seconds per measurement of the loop");
+  command.add_flag("--json", options.rt.json, "One JSON object per line");
 }
 
 } // namespace nendo::bench::rt_bench

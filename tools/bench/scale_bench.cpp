@@ -1,7 +1,6 @@
 // nendo bench scale: how the deformation's cost grows with vertices and control points.
 
 #include <cstdio>
-#include <memory>
 
 #include <nlohmann/json.hpp>
 
@@ -106,16 +105,15 @@ int bench_scale(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
       "scale",
       "Measures how the cost of the deformation grows: ten million vertices, a thousand centres");
-  add_simd_option(command, options->simd);
-  command.add_option("--repetitions", options->repetitions,
+  Options& options = command.on_chosen<Options>(bench_scale);
+  add_simd_option(command, options.simd);
+  command.add_option("--repetitions", options.repetitions,
                      "Number of repetitions, of which the best counts");
-  command.add_flag("--short", options->short_form, "Measure at most a hundred thousand vertices");
-  command.add_flag("--json", options->json, "One JSON object per line");
-  command.on_chosen([options] { return bench_scale(*options); });
+  command.add_flag("--short", options.short_form, "Measure at most a hundred thousand vertices");
+  command.add_flag("--json", options.json, "One JSON object per line");
 }
 
 } // namespace nendo::bench::scale_bench

@@ -2,7 +2,6 @@
 // faults; every record has to be accounted for, and memory must not grow.
 
 #include <fstream>
-#include <memory>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -162,16 +161,15 @@ int bench_soak(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command =
       bench.add_command("soak", "Sends millions of records with faults, as fast as possible, and "
                                 "checks that each is accounted for");
-  command.add_option("--records", options->records, "Number of records");
+  Options& options = command.on_chosen<Options>(bench_soak);
+  command.add_option("--records", options.records, "Number of records");
   command.add_option(
-      "--fault", options->faults,
+      "--fault", options.faults,
       "A fault, as for `nendo emulate`; the default ones change about 1 % of the records");
-  command.add_flag("--json", options->json, "One JSON object");
-  command.on_chosen([options] { return bench_soak(*options); });
+  command.add_flag("--json", options.json, "One JSON object");
 }
 
 } // namespace nendo::bench::soak_bench

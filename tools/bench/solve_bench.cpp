@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <random>
 #include <string>
@@ -198,17 +197,16 @@ int bench_solve(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
       "solve",
       "Measures the solve for the field of ten fingertips, and of thousands of control vectors");
-  command.add_option("--points", options->points,
+  Options& options = command.on_chosen<Options>(bench_solve);
+  command.add_option("--points", options.points,
                      "Number of control vectors, in place of 1000 and then 10000");
-  command.add_option("--neighbours", options->neighbours,
+  command.add_option("--neighbours", options.neighbours,
                      "Number of control vectors in reach of each");
-  command.add_option("--rounds", options->rounds, "Number of rounds, of which the best counts");
-  command.add_flag("--json", options->json, "One JSON object per line");
-  command.on_chosen([options] { return bench_solve(*options); });
+  command.add_option("--rounds", options.rounds, "Number of rounds, of which the best counts");
+  command.add_flag("--json", options.json, "One JSON object per line");
 }
 
 } // namespace nendo::bench::solve_bench

@@ -2,7 +2,6 @@
 // loop that the compiler vectorises.
 
 #include <cstdio>
-#include <memory>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -147,20 +146,19 @@ int bench_table1(const Options& options) {
 } // namespace
 
 void add(cli::Command& bench) {
-  auto options = std::make_shared<Options>();
   cli::Command command = bench.add_command(
       "table1",
       "Measures the paper's Table 1 on this machine, beside the paper's figures and a plain loop");
-  command.add_duration("--seconds-per-cell", options->seconds_per_cell,
+  Options& options = command.on_chosen<Options>(bench_table1);
+  command.add_duration("--seconds-per-cell", options.seconds_per_cell,
                        "Seconds per mesh, radius and layout, of which there are forty");
-  command.add_option("--picture", options->picture,
+  command.add_option("--picture", options.picture,
                      "Also draw the layout 'near' beside the paper's figures, as FILE.svg");
-  command.add_option("--figure4", options->figure4,
+  command.add_option("--figure4", options.figure4,
                      "Also draw the time of a whole frame over its evaluations, as the paper's "
                      "figure 4 does, beside the paper's, as FILE.svg");
-  add_simd_option(command, options->simd);
-  command.add_flag("--json", options->json, "One JSON object per line");
-  command.on_chosen([options] { return bench_table1(*options); });
+  add_simd_option(command, options.simd);
+  command.add_flag("--json", options.json, "One JSON object per line");
 }
 
 } // namespace nendo::bench::table1_bench
