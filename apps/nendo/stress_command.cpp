@@ -94,7 +94,7 @@ int run(const stress::StressArguments& arguments) {
   if (arguments.json) {
     cli::print_line(results);
   } else {
-    stress::print_stress(stdout, *options, **outcome, *earlier);
+    stress::print_stress(stdout, *options, **outcome, results, *earlier);
   }
   if (arguments.histogram_us && !arguments.json)
     stress::print_histogram((*outcome)->tally[stress::Measure::lateness].raw,

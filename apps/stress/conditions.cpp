@@ -14,9 +14,6 @@
 namespace nendo::stress {
 namespace {
 
-constexpr std::array<std::string_view, 7> figures{"min",   "p50",    "p90", "p99",
-                                                  "p99.9", "p99.99", "max"};
-
 struct Count {
   std::string_view name;
   std::string_view key;
@@ -41,27 +38,24 @@ bool take(std::string_view& text, std::string_view prefix) {
   return true;
 }
 
-/// Returns the path of a figure in the report, or an empty one if there is no such figure. Sets
-/// `is_count` if the figure is a count, which has no unit.
-std::vector<std::string> path_of(std::string_view name, bool& is_count) {
-  for (const Count& count : counts) {
-    if (count.name != name) continue;
-    is_count = true;
-    return {std::string(count.key)};
-  }
-  if (name == "longest_outage") return {"longest_outage_us"};
-  std::vector<std::string> path;
-  if (take(name, "corrected")) path.emplace_back("corrected");
-  std::string measure = "lateness";
-  for (const auto known : measure_names) {
+/// Sets the path of a figure in the report, and whether it is a count, which has no unit. Returns
+/// false if there is no such figure.
+bool find_figure(std::string_view name, Condition& condition) {
+  const auto count = std::find_if(counts.begin(), counts.end(),
+                                  [&](const Count& known) { return known.name == name; });
+  condition.is_count = count != counts.end();
+  if (condition.is_count) condition.path = "/" + std::string(count->key);
+  if (name == "longest_outage") condition.path = "/longest_outage_us";
+  if (!condition.path.empty()) return true;
+  if (take(name, "corrected")) condition.path = "/corrected";
+  std::string_view measure = "lateness";
+  for (const auto known : measure_names)
     if (take(name, known)) measure = known;
-  }
-  if (std::find(figures.begin(), figures.end(), name) == figures.end()) return {};
   std::string key(name);
   std::replace(key.begin(), key.end(), '.', '_');
-  path.push_back(measure + "_us");
-  path.push_back(key);
-  return path;
+  condition.path += "/" + std::string(measure) + "_us/" + key;
+  return name.find('_') == std::string_view::npos &&
+         std::find(figure_names.begin(), figure_names.end(), key) != figure_names.end();
 }
 
 std::optional<Condition> parse_one(std::string_view text) {
@@ -69,21 +63,19 @@ std::optional<Condition> parse_one(std::string_view text) {
   condition.text = text;
   const std::size_t at = text.find_first_of("<>");
   if (at == std::string_view::npos) return std::nullopt;
-  bool is_count = false;
-  condition.path = path_of(text.substr(0, at), is_count);
+  if (!find_figure(text.substr(0, at), condition)) return std::nullopt;
   condition.relation = text[at];
   std::string_view rest = text.substr(at + 1);
   condition.or_equal = rest.starts_with('=');
   if (condition.or_equal) rest.remove_prefix(1);
   const char* const end = rest.data() + rest.size();
   const auto [stopped, error] = std::from_chars(rest.data(), end, condition.threshold);
-  if (condition.path.empty() || error != std::errc{} || !std::isfinite(condition.threshold) ||
-      condition.threshold < 0.0)
+  if (error != std::errc{} || !std::isfinite(condition.threshold) || condition.threshold < 0.0)
     return std::nullopt;
   const std::string_view suffix(stopped, static_cast<std::size_t>(end - stopped));
   const auto unit = std::find_if(units.begin(), units.end(),
                                  [&](const Unit& known) { return known.name == suffix; });
-  if (unit == units.end() || (is_count && !suffix.empty())) return std::nullopt;
+  if (unit == units.end() || (condition.is_count && !suffix.empty())) return std::nullopt;
   condition.threshold *= unit->in_us;
   return condition;
 }
@@ -111,19 +103,17 @@ std::vector<std::string> fulfilled(const std::vector<Condition>& conditions,
                                    const nlohmann::ordered_json& report) {
   std::vector<std::string> lines;
   for (const Condition& condition : conditions) {
-    const nlohmann::ordered_json* at = &report;
-    for (const std::string& key : condition.path)
-      at = at != nullptr && at->contains(key) ? &at->at(key) : nullptr;
-    if (at == nullptr || !at->is_number()) {
+    const nlohmann::ordered_json::json_pointer path(condition.path);
+    if (!report.contains(path) || !report.at(path).is_number()) {
       lines.push_back(condition.text + " (not measured)");
       continue;
     }
-    const double value = at->get<double>();
+    const double value = report.at(path).get<double>();
     const bool beyond =
         condition.relation == '>' ? value > condition.threshold : value < condition.threshold;
     if (!beyond && !(condition.or_equal && value == condition.threshold)) continue;
-    const bool is_time = condition.path.back().ends_with("_us") || condition.path.size() > 1;
-    lines.push_back(fmt::format("{} ({:.10g}{})", condition.text, value, is_time ? " us" : ""));
+    lines.push_back(
+        fmt::format("{} ({:.10g}{})", condition.text, value, condition.is_count ? "" : " us"));
   }
   return lines;
 }

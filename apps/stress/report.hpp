@@ -2,12 +2,9 @@
 // The report of a stress test: the verdict in one line, a table for people, an object for programs,
 // and files for plotters.
 
-#include <array>
 #include <cstdint>
 #include <cstdio>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -36,20 +33,6 @@ Verdict judge(const StressOptions& options, const StressOutcome& outcome);
 std::string in_words(const Verdict& verdict, const StressOptions& options,
                      const StressOutcome& outcome);
 
-/// How a histogram is reported. Times are in microseconds.
-struct Figures {
-  static constexpr std::array<std::string_view, 7> names{"min",   "p50",    "p90", "p99",
-                                                         "p99_9", "p99_99", "max"};
-  std::uint64_t count = 0;
-  std::array<double, names.size()> us{}; ///< in the order of `names`
-};
-
-/// Returns nothing if nothing was recorded.
-std::optional<Figures> figures_of(const flow::Histogram& histogram);
-
-/// Returns the names of the stages that a tick runs, with "sleep" first.
-std::vector<std::string> stage_names(const flow::TickStages& stages);
-
 /// Returns a time of the run as ISO 8601 in UTC, with microseconds.
 std::string wall_time(const StressOutcome& outcome, HostTime time);
 
@@ -62,10 +45,10 @@ nlohmann::ordered_json stress_json(const StressOptions& options, const StressOut
 std::string different_work(const nlohmann::ordered_json& earlier,
                            const nlohmann::ordered_json& report);
 
-/// Prints the same figures as a table. `earlier` is the JSON report of another test, which is
-/// printed beside this one, or null.
+/// Prints `report`, which is the stress_json() of this test, as a table. `earlier` is the report of
+/// another test, which is printed beside it, or null.
 void print_stress(std::FILE* out, const StressOptions& options, const StressOutcome& outcome,
-                  const nlohmann::ordered_json& earlier);
+                  const nlohmann::ordered_json& report, const nlohmann::ordered_json& earlier);
 
 /// Prints the lateness on standard output as cyclictest does: a line for each microsecond up to
 /// `max_us`, and the number of ticks beyond.

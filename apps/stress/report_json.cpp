@@ -16,13 +16,16 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Returns null if nothing was recorded.
+/// Returns null if nothing was recorded.
 ordered_json figures_json(const flow::Histogram& histogram) {
-  const auto figures = figures_of(histogram);
-  if (!figures) return nullptr;
-  ordered_json line{{"count", figures->count}};
-  for (std::size_t k = 0; k < Figures::names.size(); ++k)
-    line[std::string(Figures::names[k])] = figures->us[k];
+  if (histogram.count() == 0) return nullptr;
+  const auto at = [&](double fraction) { return to_microseconds(histogram.percentile(fraction)); };
+  const std::array us{
+      to_microseconds(histogram.min()), at(0.50), at(0.90), at(0.99), at(0.999), at(0.9999),
+      to_microseconds(histogram.max())};
+  ordered_json line{{"count", histogram.count()}};
+  for (std::size_t k = 0; k < figure_names.size(); ++k)
+    line[std::string(figure_names[k])] = us[k];
   return line;
 }
 
@@ -129,23 +132,6 @@ ordered_json changes_json(const StressOptions& options, const StressOutcome& out
 }
 
 } // namespace
-
-std::optional<Figures> figures_of(const flow::Histogram& histogram) {
-  if (histogram.count() == 0) return std::nullopt;
-  const auto at = [&](double fraction) { return to_microseconds(histogram.percentile(fraction)); };
-  return Figures{histogram.count(),
-                 {to_microseconds(histogram.min()), at(0.50), at(0.90), at(0.99), at(0.999),
-                  at(0.9999), to_microseconds(histogram.max())}};
-}
-
-std::vector<std::string> stage_names(const flow::TickStages& stages) {
-  std::vector<std::string> names{"sleep"};
-  if (stages.input) names.emplace_back("input");
-  if (stages.hands) names.emplace_back("hands");
-  if (stages.deform) names.emplace_back("deform");
-  if (stages.publish) names.emplace_back("publish");
-  return names;
-}
 
 std::string wall_time(const StressOutcome& outcome, HostTime time) {
   const auto wall = outcome.wall_start +

@@ -36,59 +36,53 @@ constexpr std::array<std::string_view, measure_names.size()> meanings{
     "from its beginning until its frame was published", "how long a sample waited for the tick",
     "from a sample's last byte to the frame that shows it"};
 
-/// Returns a part of the earlier report, or null if it has none.
-ordered_json part(const ordered_json& whole, const std::string& key) {
-  return whole.is_object() && whole.contains(key) ? whole[key] : ordered_json(nullptr);
+/// Returns a part of a report, or null if it has none.
+ordered_json part(const ordered_json& report, const std::string& path) {
+  const ordered_json::json_pointer place(path);
+  return report.contains(place) ? report.at(place) : ordered_json(nullptr);
 }
 
-void print_row(std::FILE* out, std::string_view name, const flow::Histogram& histogram,
-               const ordered_json& earlier) {
-  const auto figures = figures_of(histogram);
-  if (!figures) return;
+void print_figures(std::FILE* out, std::string_view name, const ordered_json& figures) {
   cli::print(out, "  {:<26}", name);
-  for (const double us : figures->us)
-    cli::print(out, " {:>9}", shown(us));
-  cli::print(out, "\n");
-  if (!earlier.is_object()) return;
-  cli::print(out, "  {:<26}", "    earlier");
-  for (const auto column : Figures::names) {
-    const ordered_json value = part(earlier, std::string(column));
+  for (const auto column : figure_names) {
+    const ordered_json value = part(figures, "/" + std::string(column));
     cli::print(out, " {:>9}", value.is_number() ? shown(value.get<double>()) : "-");
   }
   cli::print(out, "\n");
 }
 
-void print_table(std::FILE* out, const StressOutcome& outcome, const ordered_json& earlier) {
-  const TickTally& tally = outcome.tally;
+void print_table(std::FILE* out, const ordered_json& report, const ordered_json& earlier) {
+  const auto print_row = [&](std::string_view name, const std::string& path) {
+    const ordered_json figures = part(report, path);
+    if (!figures.is_object()) return;
+    print_figures(out, name, figures);
+    if (const ordered_json then = part(earlier, path); then.is_object())
+      print_figures(out, "    earlier", then);
+  };
   cli::print(out, "\n  p50: half of the values are no greater; p99: 99 % of them, and so on. The "
                   "first row counts the ticks\n  that ran, \"per scheduled tick\" each tick that "
                   "was due, so that a long stall counts for each tick that it prevented.\n");
   cli::print(out, "\n  {:<26}", "microseconds");
-  for (const auto column : Figures::names) {
+  for (const auto column : figure_names) {
     std::string heading(column);
     std::replace(heading.begin(), heading.end(), '_', '.');
     cli::print(out, " {:>9}", heading);
   }
   cli::print(out, "\n");
   for (std::size_t k = 0; k < measure_names.size(); ++k) {
-    const Distribution& of = tally[static_cast<Measure>(k)];
     const std::string key = std::string(measure_names[k]) + "_us";
     const std::string name = words(measure_names[k]);
     cli::print(out, "  {}: {}\n", name, meanings[k]);
-    print_row(out, name, of.raw, part(earlier, key));
-    print_row(out, "  per scheduled tick", of.corrected, part(part(earlier, "corrected"), key));
+    print_row(name, "/" + key);
+    print_row("  per scheduled tick", "/corrected/" + key);
   }
   cli::print(out, "  the work, by stage of the tick:\n");
-  for (std::size_t k = 1; k < phase_names.size(); ++k) {
-    const std::string stage(phase_names[k]);
-    print_row(out, "  " + stage, tally.stage(static_cast<Phase>(k)),
-              part(part(earlier, "stages_us"), stage));
-  }
-  if (outcome.floor.spun_s <= 0.0) return;
+  for (const auto& [stage, figures] : report["stages_us"].items())
+    print_row("  " + stage, "/stages_us/" + stage);
+  if (!report["floor"].is_object()) return;
   cli::print(out, "  the machine's own gaps: those of a thread that only reads the clock; no "
                   "program can be better\n");
-  print_row(out, "the machine's own gaps", outcome.floor.gaps,
-            part(part(earlier, "floor"), "gaps_us"));
+  print_row("the machine's own gaps", "/floor/gaps_us");
 }
 
 void print_environment(std::FILE* out, const StressOptions& options, const StressOutcome& outcome) {
@@ -185,11 +179,11 @@ void print_incidents(std::FILE* out, const StressOutcome& outcome) {
 } // namespace
 
 void print_stress(std::FILE* out, const StressOptions& options, const StressOutcome& outcome,
-                  const ordered_json& earlier) {
-  std::fprintf(out, "%s\n\n", in_words(judge(options, outcome), options, outcome).c_str());
+                  const ordered_json& report, const ordered_json& earlier) {
+  cli::print(out, "{}\n\n", report["verdict"]["text"].get<std::string>());
   print_environment(out, options, outcome);
   print_counts(out, outcome);
-  print_table(out, outcome, earlier);
+  print_table(out, report, earlier);
   print_changes(out, options, outcome);
   print_incidents(out, outcome);
   std::fflush(out);

@@ -1,7 +1,10 @@
 #include "stress/stress_options.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "cli/cli.hpp"
 #include "cli/quantities.hpp"
@@ -10,6 +13,12 @@
 
 namespace nendo::stress {
 namespace {
+
+using flow::TickStages;
+constexpr std::array stages_by_name{std::pair{std::string_view("input"), &TickStages::input},
+                                    std::pair{std::string_view("hands"), &TickStages::hands},
+                                    std::pair{std::string_view("deform"), &TickStages::deform},
+                                    std::pair{std::string_view("publish"), &TickStages::publish}};
 
 Error usage(std::string message) {
   return {Errc::usage, std::move(message)};
@@ -43,20 +52,22 @@ Result<flow::TickStages> parse_stages(const std::string& text) {
   for (std::string_view rest = text;;) {
     const std::size_t comma = rest.find(',');
     const std::string_view name = rest.substr(0, comma);
-    if (name == "input") {
-      stages.input = true;
-    } else if (name == "hands") {
-      stages.hands = true;
-    } else if (name == "deform") {
-      stages.deform = true;
-    } else if (name == "publish") {
-      stages.publish = true;
-    } else if (name != "sleep") {
+    const auto* const stage = std::find_if(stages_by_name.begin(), stages_by_name.end(),
+                                           [&](const auto& known) { return known.first == name; });
+    if (stage != stages_by_name.end())
+      stages.*stage->second = true;
+    else if (name != "sleep")
       return usage("--stages " + text + ": use sleep, input, hands, deform, publish with commas");
-    }
     if (comma == std::string_view::npos) return stages;
     rest.remove_prefix(comma + 1);
   }
+}
+
+std::vector<std::string> stage_names(const flow::TickStages& stages) {
+  std::vector<std::string> names{"sleep"};
+  for (const auto& [name, stage] : stages_by_name)
+    if (stages.*stage) names.emplace_back(name);
+  return names;
 }
 
 Result<StressOptions> parse(const StressArguments& arguments) {

@@ -1,8 +1,10 @@
 #pragma once
 // The options of nendo stress, the check of its arguments, and the conditions of --fail-if.
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -16,12 +18,17 @@ namespace nendo::stress {
 
 /// A condition such as "p99.9>200us": a figure of the report's JSON, and what it must not be.
 struct Condition {
-  std::string text;              ///< as written
-  std::vector<std::string> path; ///< in the report, "lateness_us" and "p99_9"
-  char relation = '>';           ///< '<' or '>'
+  std::string text; ///< as written
+  std::string path; ///< in the report, "/lateness_us/p99_9"
+  bool is_count = false;
+  char relation = '>'; ///< '<' or '>'
   bool or_equal = false;
   double threshold = 0.0; ///< in the figure's own unit: microseconds, or a count
 };
+
+/// The figures of a histogram in the report.
+inline constexpr std::array<std::string_view, 7> figure_names{"min",   "p50",    "p90", "p99",
+                                                              "p99_9", "p99_99", "max"};
 
 /// Parses conditions that are separated by commas. A condition is [corrected.][MEASURE.]FIGURE,
 /// then > >= < or <=, then a number with ns, us, ms or s (us without a unit). MEASURE is lateness
@@ -74,5 +81,7 @@ Result<StressOptions> parse(const StressArguments& arguments);
 
 /// Parses a list of stages, such as "sleep,input,hands". Sleep is always a stage. Error: usage.
 Result<flow::TickStages> parse_stages(const std::string& text);
+/// Returns the names of the stages, with "sleep" first.
+std::vector<std::string> stage_names(const flow::TickStages& stages);
 
 } // namespace nendo::stress

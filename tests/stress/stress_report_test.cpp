@@ -54,7 +54,7 @@ std::string text_of(const StressOptions& options, const StressOutcome& outcome,
   char* text = nullptr;
   std::size_t length = 0;
   std::FILE* out = ::open_memstream(&text, &length);
-  print_stress(out, options, outcome, earlier);
+  print_stress(out, options, outcome, stress_json(options, outcome), earlier);
   std::fclose(out);
   std::string result(text, length);
   std::free(text);
