@@ -225,7 +225,7 @@ void print_published(const RunOutcome& outcome) {
     if (const auto* segment = std::get_if<publish::SegmentCounts>(&to.counts))
       print_row("published",
                 fmt::format("{}, {} ticks, {} bytes{}", to.target, segment->records,
-                            thousands(segment->bytes),
+                            cli::thousands(segment->bytes),
                             segment->is_locked ? "" : ", not locked in memory (see --mlockall)"));
     if (const auto* sent = std::get_if<publish::DatagramCounts>(&to.counts))
       print_row("published",

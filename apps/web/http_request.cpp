@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/text.hpp>
 
 #include "web/endpoint.hpp"
