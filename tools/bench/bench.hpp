@@ -1,5 +1,6 @@
 #pragma once
-// The commands of nendo bench. Each has a file and a namespace of its own.
+// The commands of nendo bench. Each has a file and a namespace of its own, and a function add_X()
+// that describes it.
 
 #include "cli/command.hpp"
 
@@ -7,50 +8,20 @@ namespace nendo::bench {
 
 void add_bench(cli::Command& program);
 
-namespace calibration_bench {
-void add(cli::Command& bench);
-}
-namespace clay_bench {
-void add(cli::Command& bench);
-}
-namespace cut_bench {
-void add(cli::Command& bench);
-}
-namespace deform_bench {
-void add(cli::Command& bench);
-}
-namespace faults_bench {
-void add(cli::Command& bench);
-}
-namespace hand_bench {
-void add(cli::Command& bench);
-}
-namespace join_bench {
-void add(cli::Command& bench);
-}
-namespace models_bench {
-void add(cli::Command& bench);
-}
-namespace latency_bench {
-void add(cli::Command& bench);
-}
-namespace rt_bench {
-void add(cli::Command& bench);
-}
-namespace scale_bench {
-void add(cli::Command& bench);
-}
-namespace soak_bench {
-void add(cli::Command& bench);
-}
-namespace solve_bench {
-void add(cli::Command& bench);
-}
-namespace table1_bench {
-void add(cli::Command& bench);
-}
-namespace wearers_bench {
-void add(cli::Command& bench);
-}
+void add_calibration(cli::Command& bench);
+void add_clay(cli::Command& bench);
+void add_cut(cli::Command& bench);
+void add_deform(cli::Command& bench);
+void add_faults(cli::Command& bench);
+void add_hand(cli::Command& bench);
+void add_join(cli::Command& bench);
+void add_models(cli::Command& bench);
+void add_latency(cli::Command& bench);
+void add_rt(cli::Command& bench);
+void add_scale(cli::Command& bench);
+void add_soak(cli::Command& bench);
+void add_solve(cli::Command& bench);
+void add_table1(cli::Command& bench);
+void add_wearers(cli::Command& bench);
 
 } // namespace nendo::bench

@@ -8,21 +8,21 @@ void add_bench(cli::Command& program) {
       "bench", "Measures this program on this machine: latency, faults, load, loop, rings, hands, "
                "calibration, fields, deformation, clay, cuts, joins");
   bench.require_command();
-  calibration_bench::add(bench);
-  clay_bench::add(bench);
-  cut_bench::add(bench);
-  deform_bench::add(bench);
-  latency_bench::add(bench);
-  faults_bench::add(bench);
-  hand_bench::add(bench);
-  join_bench::add(bench);
-  models_bench::add(bench);
-  rt_bench::add(bench);
-  scale_bench::add(bench);
-  soak_bench::add(bench);
-  solve_bench::add(bench);
-  table1_bench::add(bench);
-  wearers_bench::add(bench);
+  add_calibration(bench);
+  add_clay(bench);
+  add_cut(bench);
+  add_deform(bench);
+  add_latency(bench);
+  add_faults(bench);
+  add_hand(bench);
+  add_join(bench);
+  add_models(bench);
+  add_rt(bench);
+  add_scale(bench);
+  add_soak(bench);
+  add_solve(bench);
+  add_table1(bench);
+  add_wearers(bench);
 }
 
 } // namespace nendo::bench

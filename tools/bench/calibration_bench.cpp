@@ -130,8 +130,10 @@ int bench_calibration(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::calibration_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_calibration(cli::Command& bench) {
+  using namespace calibration_bench;
   cli::Command command = bench.add_command(
       "calibration",
       "Measures the accuracy of guided calibration, on synthetic wearers with known joints");
@@ -148,5 +150,3 @@ void add(cli::Command& bench) {
                      "Calibrate the wearers of this file, which `nendo bench wearers` writes, in "
                      "place of new ones");
 }
-
-} // namespace nendo::bench::calibration_bench

@@ -145,8 +145,10 @@ int bench_clay(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::clay_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_clay(cli::Command& bench) {
+  using namespace clay_bench;
   cli::Command command =
       bench.add_command("clay", "Measures clay that whole hands press, beside a plain program");
   Options& options = command.on_chosen<Options>(bench_clay);
@@ -162,5 +164,3 @@ void add(cli::Command& bench) {
   command.add_flag("--short", options.short_form, "Measure only a small ball");
   command.add_flag("--json", options.json, "One JSON object per line");
 }
-
-} // namespace nendo::bench::clay_bench

@@ -127,13 +127,13 @@ int run(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::cut_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_cut(cli::Command& bench) {
+  using namespace cut_bench;
   cli::Command command =
       bench.add_command("cut", "Measures the time to cut models of 30,000 and 330,000 triangles");
   Options& options = command.on_chosen<Options>(run);
   command.add_option("--repetitions", options.repetitions, "Number of cuts of each kind");
   command.add_flag("--json", options.json, "One JSON object per line");
 }
-
-} // namespace nendo::bench::cut_bench

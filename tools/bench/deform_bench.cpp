@@ -144,8 +144,10 @@ int bench_deform(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::deform_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_deform(cli::Command& bench) {
+  using namespace deform_bench;
   cli::Command command = bench.add_command(
       "deform", "Measures both types of deformation, beside a plain loop and the machine's floors");
   Options& options = command.on_chosen<Options>(bench_deform);
@@ -154,5 +156,3 @@ void add(cli::Command& bench) {
                    "Measure only the two smaller meshes, with few repetitions");
   command.add_flag("--json", options.json, "One JSON object per line");
 }
-
-} // namespace nendo::bench::deform_bench

@@ -100,8 +100,10 @@ int bench_faults(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::faults_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_faults(cli::Command& bench) {
+  using namespace faults_bench;
   cli::Command command = bench.add_command(
       "faults",
       "Measures the records that each fault costs each CyberGlove, through the real driver");
@@ -111,5 +113,3 @@ void add(cli::Command& bench) {
   command.add_flag("--json", options.json, "One JSON object per case");
   command.add_flag("--markdown", options.markdown, "A table in Markdown");
 }
-
-} // namespace nendo::bench::faults_bench

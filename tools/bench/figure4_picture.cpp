@@ -12,7 +12,6 @@
 #include "bench/table1_paper.hpp"
 #include "bench/whole_frame.hpp"
 #include "cli/svg_drawing.hpp"
-#include "reference/table1.hpp"
 
 namespace nendo::bench {
 namespace {

@@ -245,8 +245,10 @@ int bench_hand(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::hand_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_hand(cli::Command& bench) {
+  using namespace hand_bench;
   cli::Command command = bench.add_command(
       "hand",
       "Measures poses of both hands, beside plain products of matrices, and inverse kinematics");
@@ -256,5 +258,3 @@ void add(cli::Command& bench) {
                      "Number of hands to compute from their fingertips");
   command.add_flag("--json", options.json, "One JSON object");
 }
-
-} // namespace nendo::bench::hand_bench

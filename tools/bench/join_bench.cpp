@@ -45,13 +45,13 @@ int bench_join(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::join_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_join(cli::Command& bench) {
+  using namespace join_bench;
   cli::Command command = bench.add_command(
       "join", "Measures the join of two models, with a sharp and with a blended seam");
   Options& options = command.on_chosen<Options>(bench_join);
   command.add_flag("--short", options.short_form, "Measure only small models, once");
   command.add_flag("--json", options.json, "One JSON object per line");
 }
-
-} // namespace nendo::bench::join_bench

@@ -200,8 +200,11 @@ int write_wearers(const Options& options) {
 }
 
 } // namespace
+} // namespace wearers_bench
+} // namespace nendo::bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_wearers(cli::Command& bench) {
+  using namespace wearers_bench;
   cli::Command command = bench.add_command(
       "wearers",
       "Writes synthetic wearers of another model, for `nendo bench calibration --judge`");
@@ -215,6 +218,3 @@ void add(cli::Command& bench) {
   command.add_option("--without", options.without, "An error term that these wearers do not have");
   command.add_option("--only", options.only, "The only error term that they have, or none");
 }
-
-} // namespace wearers_bench
-} // namespace nendo::bench

@@ -89,8 +89,10 @@ int bench_driver(DriverOptions& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::latency_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_latency(cli::Command& bench) {
+  using namespace latency_bench;
   cli::Command command = bench.add_command(
       "driver",
       "Measures the latency of the CyberGlove driver, beside that of a bare poll()+read() thread");
@@ -99,5 +101,3 @@ void add(cli::Command& bench) {
   command.add_rate("--rate", options.latency.rate_hz, "Records per second, 1 to 480");
   command.add_flag("--json", options.json, "One JSON object per line");
 }
-
-} // namespace nendo::bench::latency_bench

@@ -247,8 +247,10 @@ int run(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::models_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_models(cli::Command& bench) {
+  using namespace models_bench;
   cli::Command command = bench.add_command(
       "models",
       "Measures the cost of a subdivided model for the tick that accepts it, and of its undo");
@@ -262,5 +264,3 @@ void add(cli::Command& bench) {
       "Seconds that a loop runs without, and then with changes of the radius; 0: none");
   command.add_flag("--json", options.json, "One JSON object per line");
 }
-
-} // namespace nendo::bench::models_bench

@@ -38,8 +38,10 @@ int bench_rt(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::rt_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_rt(cli::Command& bench) {
+  using namespace rt_bench;
   cli::Command command =
       bench.add_command("rt", "Measures rings, the hand-off of frames and the loop, beside other "
                               "implementations in the same run");
@@ -51,5 +53,3 @@ void add(cli::Command& bench) {
   command.add_option("--seconds", options.rt.seconds, "Seconds per measurement of the loop");
   command.add_flag("--json", options.rt.json, "One JSON object per line");
 }
-
-} // namespace nendo::bench::rt_bench

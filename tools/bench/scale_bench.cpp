@@ -103,8 +103,10 @@ int bench_scale(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::scale_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_scale(cli::Command& bench) {
+  using namespace scale_bench;
   cli::Command command = bench.add_command(
       "scale",
       "Measures how the cost of the deformation grows: ten million vertices, a thousand centres");
@@ -115,5 +117,3 @@ void add(cli::Command& bench) {
   command.add_flag("--short", options.short_form, "Measure at most a hundred thousand vertices");
   command.add_flag("--json", options.json, "One JSON object per line");
 }
-
-} // namespace nendo::bench::scale_bench

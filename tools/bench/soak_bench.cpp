@@ -159,8 +159,10 @@ int bench_soak(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::soak_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_soak(cli::Command& bench) {
+  using namespace soak_bench;
   cli::Command command =
       bench.add_command("soak", "Sends millions of records with faults, as fast as possible, and "
                                 "checks that each is accounted for");
@@ -171,5 +173,3 @@ void add(cli::Command& bench) {
       "A fault, as for `nendo emulate`; the default ones change about 1 % of the records");
   command.add_flag("--json", options.json, "One JSON object");
 }
-
-} // namespace nendo::bench::soak_bench

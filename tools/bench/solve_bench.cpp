@@ -195,8 +195,10 @@ int bench_solve(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::solve_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_solve(cli::Command& bench) {
+  using namespace solve_bench;
   cli::Command command = bench.add_command(
       "solve",
       "Measures the solve for the field of ten fingertips, and of thousands of control vectors");
@@ -208,5 +210,3 @@ void add(cli::Command& bench) {
   command.add_option("--rounds", options.rounds, "Number of rounds, of which the best counts");
   command.add_flag("--json", options.json, "One JSON object per line");
 }
-
-} // namespace nendo::bench::solve_bench

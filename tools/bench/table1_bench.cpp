@@ -144,8 +144,10 @@ int bench_table1(const Options& options) {
 }
 
 } // namespace
+} // namespace nendo::bench::table1_bench
 
-void add(cli::Command& bench) {
+void nendo::bench::add_table1(cli::Command& bench) {
+  using namespace table1_bench;
   cli::Command command = bench.add_command(
       "table1",
       "Measures the paper's Table 1 on this machine, beside the paper's figures and a plain loop");
@@ -160,5 +162,3 @@ void add(cli::Command& bench) {
   add_simd_option(command, options.simd);
   command.add_flag("--json", options.json, "One JSON object per line");
 }
-
-} // namespace nendo::bench::table1_bench
