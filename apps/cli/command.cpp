@@ -10,7 +10,6 @@
 #include <new>
 #include <optional>
 #include <sstream>
-#include <streambuf>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -19,6 +18,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <ext/stdio_sync_filebuf.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <spdlog/fmt/fmt.h>
@@ -190,26 +190,6 @@ int report_usage(const CLI::App& app, const std::string& first_word, const std::
                         " (see nendo " + path + "--help)"});
 }
 
-/// Passes everything to a FILE, which has the buffer, so that std::cout and printf keep their
-/// order.
-class FileBuffer final : public std::streambuf {
-public:
-  explicit FileBuffer(std::FILE* file) noexcept : file_(file) {}
-
-private:
-  int_type overflow(int_type byte) override {
-    if (traits_type::eq_int_type(byte, traits_type::eof())) return traits_type::not_eof(byte);
-    return std::fputc(byte, file_) == EOF ? traits_type::eof() : byte;
-  }
-  std::streamsize xsputn(const char* bytes, std::streamsize size) override {
-    const auto wanted = static_cast<std::size_t>(size);
-    return static_cast<std::streamsize>(std::fwrite(bytes, 1, wanted, file_));
-  }
-  int sync() override { return std::fflush(file_) == 0 ? 0 : -1; }
-
-  std::FILE* file_;
-};
-
 // Where standard output was closed, the next file that is opened would get its number, and with it
 // whatever is printed. Its replacement cannot be written to.
 void fill_closed_descriptors() noexcept {
@@ -233,7 +213,7 @@ public:
     std::setvbuf(file_, nullptr, ::isatty(STDOUT_FILENO) != 0 ? _IOLBF : _IOFBF, BUFSIZ);
     std::fflush(stdout);
     stdout = file_;
-    buffer_ = std::make_unique<FileBuffer>(file_);
+    buffer_ = std::make_unique<Unbuffered>(file_);
     buffer_before_ = std::cout.rdbuf(buffer_.get());
   }
   ~StandardOutput() {
@@ -258,6 +238,9 @@ public:
   }
 
 private:
+  /// Leaves the buffer to the FILE, so that std::cout and printf keep their order.
+  using Unbuffered = __gnu_cxx::stdio_sync_filebuf<char>;
+
   static ssize_t write(void* self, const char* bytes, std::size_t size) {
     const bool written = static_cast<StandardOutput*>(self)->write_all(bytes, size);
     return written ? static_cast<ssize_t>(size) : 0; // 0 is an error for fopencookie
@@ -286,7 +269,7 @@ private:
 
   std::FILE* file_; ///< passes all bytes to write()
   std::FILE* stdout_before_;
-  std::unique_ptr<std::streambuf> buffer_; ///< passes what std::cout gets to `file_`
+  std::unique_ptr<Unbuffered> buffer_; ///< passes the output of std::cout to `file_`
   std::streambuf* buffer_before_;
   bool failed_ = false;
   int error_number_ = 0; ///< the first error; 0: none that must be reported
