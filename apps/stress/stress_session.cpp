@@ -15,6 +15,7 @@
 #include "session/open_hands.hpp"
 #include "session/run_commands.hpp"
 #include "session/run_recording.hpp"
+#include "session/run_session.hpp"
 #include "stress/load.hpp"
 
 namespace nendo::stress {

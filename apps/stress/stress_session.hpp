@@ -14,7 +14,7 @@
 #include <nendo/flow/histogram.hpp>
 #include <nendo/flow/realtime.hpp>
 
-#include "session/run_session.hpp"
+#include "session/observer.hpp"
 #include "stress/stress_options.hpp"
 #include "stress/tick_tally.hpp"
 
