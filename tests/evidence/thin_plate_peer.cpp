@@ -93,11 +93,12 @@ int main(int argc, char** argv) {
   std::printf("%25s %21s %22s\n%8s %6s %9s %10s %10s %11s %10s\n", "", "one thread", "two threads",
               "vertices", "radius", "VTK", "Type-1", "Type-2", "Type-1", "Type-2");
   const Points starts = table1_starts();
-  for (const Table1Plane& mesh : table1_planes) {
-    const Points plane = table1_plane(mesh.cells, mesh.with_middles);
+  for (const Table1Plane& layout : table1_planes) {
+    const nendo::deform::Mesh mesh = table1_mesh(layout);
+    const Points& plane = mesh.vertices;
     for (const double radius : table1_radii) {
       const double vtk = measure(plane, starts, seconds);
-      const Table1Cell cell = measure_table1_cell(plane, starts, radius, seconds);
+      const Table1Cell cell = measure_table1_cell(mesh, starts, radius, seconds);
       std::printf("%8lld %6.0f %9.0f %8.0f x %8.0f x %9.0f x %8.0f x\n",
                   static_cast<long long>(plane.cols()), radius, vtk, cell.one_thread[0] / vtk,
                   cell.one_thread[1] / vtk, cell.two_threads[0] / vtk, cell.two_threads[1] / vtk);
