@@ -127,7 +127,7 @@ flow::Command clutch(bool on) {
 }
 template <Side side>
 bool plays(const Situation& now) {
-  return !now.frame.let_go[flow::Placement::index_of(side)];
+  return !now.frame.released[flow::Placement::index_of(side)];
 }
 template <void (flow::PendingSettings::*change)() noexcept>
 void choose(flow::PendingSettings& pending, const flow::Frame&) {

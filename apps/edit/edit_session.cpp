@@ -304,7 +304,7 @@ const render::SceneFrame& EditSession::scene_frame() {
     const hand::HandPose& held =
         scene_frame_.held ? hand.at(found.shape->held_since_s).pose : seen.pose;
     seen.starts = held.fingertip_positions();
-    scene_frame_.hands[flow::Placement::index_of(hand.side)] = seen;
+    scene_frame_.hands[flow::Placement::index_of(hand.skeleton.side())] = seen;
   }
   return scene_frame_;
 }

@@ -127,6 +127,7 @@ GlbFile::Index GlbFile::add_sparse_vectors(const Eigen::Matrix3Xf& vectors) {
 
 GlbFile::Index GlbFile::add_numbers(std::span<const float> numbers, std::size_t width,
                                     std::optional<Use> use) {
+  assert(width == 1 || width == 2 || width == 4 || width == 16);
   const char* const type = width == 1   ? "SCALAR"
                            : width == 2 ? "VEC2"
                            : width == 4 ? "VEC4"

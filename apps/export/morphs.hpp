@@ -1,5 +1,6 @@
 #pragma once
-// Takes that are linear in control vectors, or in the functions of a puppet, as morph targets.
+// Takes as morph targets: exact ones of takes that are linear in control vectors or in the
+// functions of a puppet, and key shapes of all others.
 
 #include <algorithm>
 #include <functional>

@@ -72,7 +72,7 @@ Result<Side> side_of(const ImportOptions& options, std::optional<Side> in_file) 
                                                 "; if that is correct, add --hand " + word
                                           : "add --hand left or right")};
   }
-  const Side wanted = options.hand == "left" ? Side::left : Side::right;
+  const Side wanted = side_named(options.hand).value_or(Side::right); // the option is one of these
   if (in_file && *in_file != wanted) {
     return Error{Errc::bad_input, options.file + ": is for a " + std::string(name_of(*in_file)) +
                                       " hand; leave --hand out or choose another file"};

@@ -107,12 +107,11 @@ bool follow_keys(const Options& options, int& shown) {
 }
 
 Result<void> complete(Options& options) {
-  if (options.hand != "left" && options.hand != "right") {
-    return Error{Errc::usage, "--hand " + options.hand + ": use left or right"};
-  }
+  const auto side = side_named(options.hand);
+  if (!side) return Error{Errc::usage, "--hand " + options.hand + ": use left or right"};
   if (auto fine = cli::check_duration(options.duration_s); !fine) return fine;
   emulator::EmulatorOptions& emulator = options.emulator;
-  emulator.side = options.hand == "left" ? Side::left : Side::right;
+  emulator.side = *side;
   emulator.pace =
       options.pace == "host" ? emulator::EmulatorPace::host : emulator::EmulatorPace::clock;
   emulator.cyberglove.period_low_first = options.period_order == "lsb";
@@ -210,8 +209,8 @@ void add_cyberglove_options(cli::Command command, Options& options) {
       .one_of({"on", "off"});
   command
       .add_option("--hires-form", options.hires_form,
-                  "Reply to 1S of a III. hardware: it echoes 1S, and then 0x03, without NUL, and "
-                  "counts sub-frames from 0; terminated: with NUL, and from 1")
+                  "Replies of a III. hardware: it echoes 1S, and the 0x03 that ends its stream, "
+                  "without NUL, and counts sub-frames from 0; terminated: with NUL, and from 1")
       .one_of({"hardware", "terminated"});
   command.add_duration(
       "--restart-time", glove.restart_s,

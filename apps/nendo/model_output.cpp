@@ -38,7 +38,7 @@ Result<void> ModelOutput::check(const std::string& file,
 }
 
 Result<void> ModelOutput::write(const std::string& file, const deform::Mesh& mesh) const {
-  return takes::write_model(file, mesh, takes::axis_of(reading()));
+  return takes::write_model(file, mesh, reading().up_axis());
 }
 
 void report_model(const std::string& file, const deform::Mesh& mesh, const std::string& more) {

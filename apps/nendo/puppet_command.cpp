@@ -1,7 +1,6 @@
 // nendo puppet: shows, checks and makes puppet files.
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>

@@ -91,9 +91,9 @@ private:
   std::uint64_t changes_ = 0;
 };
 
-/// Returns the header of the segment of such a loop, without the writer and the times. It has space
-/// for the records of one second, but at least 4, at most 1024 and, above 4, at most 16 MiB. It has
-/// space for four shapes.
+/// Returns the header of the segment of such a loop, without the writer and the times. The segment
+/// has space for the records of one second, but at least 4, at most 1024 and, above 4, at most 16
+/// MiB, and for four shapes.
 nendo_publish_header plan_segment(const LoopOutline& outline) noexcept;
 
 struct SegmentCounts {

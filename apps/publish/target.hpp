@@ -1,5 +1,5 @@
 #pragma once
-// The places that `--publish` can name.
+// The places that `--publish` can name, and the errors of opening them.
 
 #include <optional>
 #include <string>

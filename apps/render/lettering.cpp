@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include <nendo/base/text.hpp>
+
 namespace nendo::render {
 
 namespace {
@@ -149,15 +151,13 @@ void write_words(Image& image, double x, double y, double height, std::string_vi
   for (const char letter : words) {
     std::string_view strokes = strokes_of(letter);
     while (!strokes.empty()) {
-      const auto end = std::min(strokes.find(' '), strokes.size());
-      const auto line = line_of(strokes.substr(0, end));
+      const auto line = line_of(cut(strokes, ' '));
       for (std::size_t at = 0; at < line.size(); ++at) {
         const Point a = line[at];
         const Point b = line[std::min(at + 1, line.size() - 1)];
         ink.stroke({x + a.x * unit, y - a.y * unit}, {x + b.x * unit, y - b.y * unit},
                    std::max(0.55, stroke_fraction / 2 * height));
       }
-      strokes.remove_prefix(std::min(end + 1, strokes.size()));
     }
     x += (width_of(letter) + space_units) * unit;
   }

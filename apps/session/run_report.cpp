@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <iostream>
 #include <numeric>
 #include <string_view>
@@ -263,7 +264,7 @@ void print_summary_text(const RunOptions& options, const std::vector<gloves::Ope
   print_published(outcome);
   print_row("result", outcome.result);
   if (!options.picture.empty()) print_row("picture", options.picture);
-  std::cout << std::flush;
+  std::fflush(stdout);
 }
 
 } // namespace

@@ -36,7 +36,7 @@ Result<void> write_shape(const std::string& out, const deform::Mesh& shape, defo
 }
 
 RunSaving::RunSaving(const RunOptions& options, RunRecorder& recorder)
-    : out_(options.out), up_(options.reading.up.value_or(deform::UpAxis::y)), model_(options.mesh),
+    : out_(options.out), up_(options.reading.up_axis()), model_(options.mesh),
       out_puppet_(options.out_puppet), recorder_(recorder) {}
 
 void RunSaving::add(const flow::Command& command) noexcept {

@@ -168,8 +168,7 @@ public:
       feedback.put_out();
     for (const auto& hand : hands_)
       hand.glove->stop();
-    if (const auto written =
-            write_shape(options_.out, model_, options_.reading.up.value_or(deform::UpAxis::y));
+    if (const auto written = write_shape(options_.out, model_, options_.reading.up_axis());
         !written)
       return written.error();
     if (const auto drawn = picture.write(model_); !drawn) return drawn.error();

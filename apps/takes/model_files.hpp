@@ -32,16 +32,12 @@ Result<void> write_model(const std::string& file, const deform::Mesh& mesh,
 void add_up_option(cli::Command& command, std::string& up);
 /// Returns what that option says.
 deform::ReadOptions reading(const std::string& up);
-/// Returns the axis that points up in files that are read so.
-inline deform::UpAxis axis_of(const deform::ReadOptions& options) noexcept {
-  return options.up.value_or(deform::UpAxis::y);
-}
 
 struct RecordedModel {
   deform::Mesh mesh;
   bool is_recorded = true;       ///< it is made of the file as it was then
   deform::ReadOptions reading{}; ///< how the file was read
-  deform::UpAxis up() const noexcept { return axis_of(reading); }
+  deform::UpAxis up() const noexcept { return reading.up_axis(); }
 };
 /// Reads the model from the file `named`, or from the recorded file name if `named` is empty, and
 /// subdivides and refines it as it was before the recording began. It is read as it was then: of

@@ -102,8 +102,8 @@ void keep_puppet(const flow::DeformLoop& loop, const puppet::RigState& state,
 
 /// Returns the number in the timeline's puppet of a function of the one that is played then;
 /// nothing if it has none such.
-std::optional<std::uint16_t> number_in(const puppet::Rig& timelines, const puppet::Rig& played,
-                                       std::uint16_t function) {
+std::optional<std::uint16_t> function_in(const puppet::Rig& timelines, const puppet::Rig& played,
+                                         std::uint16_t function) {
   const auto from = puppet::functions_before(played.puppet(), timelines.puppet());
   const auto found = std::ranges::find(from, std::size_t{function});
   if (found == from.end()) return std::nullopt;
@@ -133,8 +133,9 @@ public:
   /// A loop ignores roles of functions that the puppet which is played then does not have.
   void record(const flow::SetRole& role) {
     const auto& played = loop_.changes().puppet(loop_.changes().newest_puppet());
-    const auto number = played && timeline_.rig ? number_in(*timeline_.rig, *played, role.function)
-                                                : std::optional(role.function);
+    const auto number = played && timeline_.rig
+                            ? function_in(*timeline_.rig, *played, role.function)
+                            : std::optional(role.function);
     if (number) puppet_commands_.emplace_back(flow::SetRole{*number, role.input});
   }
 
@@ -218,7 +219,7 @@ private:
       const auto by_switch = puppet::ClutchTrigger::wrist_switch;
       if (used && timeline_.rig && timeline_.rig->puppet().clutch.means[slot] == by_switch)
         puppet_commands_.emplace_back(
-            flow::SetClutch{side, puppet::RigPlayer::all_fingers, !frame.let_go[slot]});
+            flow::SetClutch{side, puppet::RigPlayer::all_fingers, !frame.released[slot]});
     }
   }
 

@@ -129,7 +129,7 @@ private:
 
   void pose(PuppetHands& hands, double time_s) const {
     for (const MovingHand& hand : moving_)
-      hands.pose(hand.side, hand.at(time_s));
+      hands.pose(hand.skeleton.side(), hand.at(time_s));
   }
 
   const Timeline& timeline_;

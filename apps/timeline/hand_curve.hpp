@@ -41,12 +41,10 @@ private:
 
 /// A hand of a timeline, for its poses at all times.
 struct MovingHand {
-  explicit MovingHand(const HandTrack& track)
-      : side(track.side), skeleton(track.skeleton()), curve(track.keys) {}
+  explicit MovingHand(const HandTrack& track) : skeleton(track.skeleton()), curve(track.keys) {}
 
   puppet::HandState at(double time_s) const noexcept;
 
-  Side side;
   hand::HandSkeleton skeleton;
   HandCurve curve;
 };

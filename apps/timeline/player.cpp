@@ -106,7 +106,7 @@ double Player::last_time_s() const noexcept {
 
 void Player::pose_hands(double time_s) {
   for (const MovingHand& hand : hands_) {
-    const std::size_t slot = flow::Placement::index_of(hand.side);
+    const std::size_t slot = flow::Placement::index_of(hand.skeleton.side());
     const puppet::HandState& pose = poses_[slot] = hand.at(time_s);
     flow::HandFrame& shown = frame_.hands[slot];
     shown.angles = pose.angles;
@@ -120,7 +120,7 @@ void Player::pose_hands(double time_s) {
 flow::ShapingCore::Hands Player::hands() const noexcept {
   flow::ShapingCore::Hands hands{};
   for (const MovingHand& hand : hands_) {
-    const std::size_t slot = flow::Placement::index_of(hand.side);
+    const std::size_t slot = flow::Placement::index_of(hand.skeleton.side());
     hands[slot] = &poses_[slot];
   }
   return hands;

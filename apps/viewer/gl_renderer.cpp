@@ -129,7 +129,7 @@ void GlRenderer::follow(const deform::BlockShape& shape) {
     const deform::VertexBlock& now = shape[block];
     send(model_buffers_[0], block, now.x.data());
     for (std::size_t lane = 0; lane < block_size; ++lane)
-      places_[block * block_size + lane] = {now.x[lane], now.y[lane], now.z[lane]};
+      places_[block * block_size + lane] = deform::vertex_in(now, lane);
     ++blocks_sent_;
     changed = true;
   }

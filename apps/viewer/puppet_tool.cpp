@@ -175,7 +175,7 @@ void PuppetMarks::add_reach(const PuppetEditor& editor) {
   Eigen::VectorXd distances;
   if (editor.rig().puppet().distance == puppet::Distance::surface) {
     if (!graph_) graph_.emplace(model);
-    distances = graph_->distances(deform::nearest_place(model, at), radius);
+    distances = graph_->distances(deform::nearest_position(model, at), radius);
   } else {
     distances = (model.vertices.colwise() - at).colwise().norm();
   }

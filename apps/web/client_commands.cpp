@@ -114,41 +114,24 @@ std::string take(std::string_view name, std::string_view value, NamedSettings& n
   return "there is no setting " + in_quotes(name) + "; message 4 names all settings";
 }
 
-/// Takes a text apart at single spaces.
-class Words {
-public:
-  explicit Words(std::string_view text) noexcept : rest_(text) {}
-
-  /// The next one; empty at the end, and where two spaces meet.
-  std::string_view next() noexcept {
-    if (ended_) return {};
-    ended_ = rest_.find(' ') == std::string_view::npos;
-    return cut(rest_, ' ');
+/// Reads as many items, and returns whether all of them are finite numbers.
+bool read_numbers(ItemReader& words, std::span<double> numbers) noexcept {
+  for (double& number : numbers) {
+    const auto value = to_finite_number(words.next());
+    if (!value) return false;
+    number = *value;
   }
-  bool are_over() const noexcept { return ended_; }
+  return true;
+}
 
-  /// Whether as many words follow, all of them finite numbers.
-  bool take(std::span<double> numbers) noexcept {
-    for (double& number : numbers) {
-      const auto value = to_finite_number(next());
-      if (!value) return false;
-      number = *value;
-    }
-    return true;
-  }
-
-private:
-  std::string_view rest_;
-  bool ended_ = false;
-};
-
-std::optional<flow::Command> wrist_in(Words words) noexcept {
+std::optional<flow::Command> wrist_in(ItemReader words) noexcept {
   constexpr double max_norm_error = 0.01; // six decimals for each part are precise enough
-  const auto hand = words.next();
+  const auto side = side_named(words.next());
+  if (!side) return std::nullopt;
   flow::WristMove move;
-  move.side = hand == "left" ? Side::left : Side::right;
-  if (hand != "left" && hand != "right") return std::nullopt;
-  if (!words.take(move.position_m) || !words.take(move.turn_xyzw) || !words.are_over())
+  move.side = *side;
+  if (!read_numbers(words, move.position_m) || !read_numbers(words, move.turn_xyzw) ||
+      !words.has_ended())
     return std::nullopt;
   double squared = 0.0;
   for (const double part : move.turn_xyzw)
@@ -160,13 +143,12 @@ std::optional<flow::Command> wrist_in(Words words) noexcept {
   return move;
 }
 
-std::optional<flow::Command> clutch_in(Words words) noexcept {
-  const auto hand = words.next();
+std::optional<flow::Command> clutch_in(ItemReader words) noexcept {
+  const auto side = side_named(words.next());
   const auto finger = words.next();
   const auto holds = truth_in(words.next(), "on", "off");
-  if ((hand != "left" && hand != "right") || !holds || !words.are_over()) return std::nullopt;
-  flow::SetClutch clutch{hand == "left" ? Side::left : Side::right, puppet::RigPlayer::all_fingers,
-                         *holds};
+  if (!side || !holds || !words.has_ended()) return std::nullopt;
+  flow::SetClutch clutch{*side, puppet::RigPlayer::all_fingers, *holds};
   if (finger == "all") return clutch;
   clutch.finger = puppet::HandSignal::no_finger;
   if (finger == "wrist") return clutch;
@@ -175,24 +157,24 @@ std::optional<flow::Command> clutch_in(Words words) noexcept {
   return std::nullopt;
 }
 
-std::optional<flow::Command> mask_in(Words words) noexcept {
+std::optional<flow::Command> mask_in(ItemReader words) noexcept {
   const auto edit = flow::mask_edit_named(words.next());
   if (edit != flow::MaskEdit::hold && edit != flow::MaskEdit::free) return std::nullopt;
   flow::SetMask mask{*edit};
   std::array<double, 1> radius{};
-  if (!words.take(mask.at) || !words.take(radius)) return std::nullopt;
+  if (!read_numbers(words, mask.at) || !read_numbers(words, radius)) return std::nullopt;
   mask.radius = radius[0];
-  if (!words.are_over() || !mask.is_usable()) return std::nullopt;
+  if (!words.has_ended() || !mask.is_usable()) return std::nullopt;
   return mask;
 }
 
-std::optional<flow::Command> role_in(Words words) noexcept {
+std::optional<flow::Command> role_in(ItemReader words) noexcept {
   std::array<double, 1> function{};
-  if (!words.take(function)) return std::nullopt;
+  if (!read_numbers(words, function)) return std::nullopt;
   const auto input = puppet::HandSignal::named(words.next());
   const bool exists = function[0] >= 0.0 && function[0] < puppet::Puppet::max_functions &&
                       function[0] == std::floor(function[0]);
-  if (!input || !exists || !words.are_over()) return std::nullopt;
+  if (!input || !exists || !words.has_ended()) return std::nullopt;
   return flow::SetRole{static_cast<std::uint16_t>(function[0]), *input};
 }
 
@@ -200,14 +182,14 @@ std::optional<flow::Command> role_in(Words words) noexcept {
 std::optional<flow::Command> command_in(std::string_view text) noexcept {
   if (text == "record") return flow::SetRecording{true};
   if (text == "end recording") return flow::SetRecording{false};
-  Words words(text);
+  ItemReader words(text, ' ');
   const auto first = words.next();
   if (first == "wrist") return wrist_in(words);
   if (first == "clutch") return clutch_in(words);
   if (first == "role") return role_in(words);
   if (first == "mask") return mask_in(words);
   const auto on = truth_in(words.next(), "on", "off");
-  if (!on || !words.are_over()) return std::nullopt;
+  if (!on || !words.has_ended()) return std::nullopt;
   if (first == "symmetry") return flow::SetSymmetry{*on};
   if (first == "wire") return flow::DrawWire{*on};
   if (first == "knife") return flow::DrawWire{*on, flow::Blade::knife};

@@ -14,14 +14,14 @@ namespace {
 // Letters of ASCII alone.
 bool equal_ignoring_case(std::string_view a, std::string_view b) noexcept {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return small_letter(x) == small_letter(y); });
+                    [](char x, char y) { return to_lower(x) == to_lower(y); });
 }
 
 // RFC 9110, section 5.6.2.
 bool is_token(std::string_view text) noexcept {
   constexpr std::string_view marks = "!#$%&'*+-.^_`|~";
   return !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
-    const char l = small_letter(c);
+    const char l = to_lower(c);
     return (l >= 'a' && l <= 'z') || (c >= '0' && c <= '9') ||
            marks.find(c) != std::string_view::npos;
   });
@@ -38,7 +38,9 @@ bool is_value(std::string_view text) noexcept {
   });
 }
 
-std::string_view trimmed(std::string_view text) noexcept {
+// Space and tab alone are optional white space (RFC 9110, section 5.6.3). is_value() must see all
+// other control characters, which nendo::trimmed() would remove.
+std::string_view without_blanks(std::string_view text) noexcept {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
@@ -74,7 +76,7 @@ int parse_headers(std::string_view rest, HttpRequest& request) {
     const auto colon = line.find(':');
     if (colon == std::string_view::npos) return 400;
     const auto name = line.substr(0, colon);
-    const auto value = trimmed(line.substr(colon + 1));
+    const auto value = without_blanks(line.substr(colon + 1));
     // Lines that begin with a space (the obsolete folding of headers) have no valid name, either.
     if (!is_token(name) || !is_value(value)) return 400;
     if (request.headers.size() == max_headers) return 431;
@@ -126,7 +128,7 @@ bool HttpRequest::lists(std::string_view name, std::string_view word) const noex
   for (const auto& [key, value] : headers) {
     if (!equal_ignoring_case(key, name)) continue;
     for (std::string_view rest = value; !rest.empty();)
-      if (equal_ignoring_case(trimmed(cut(rest, ',')), word)) return true;
+      if (equal_ignoring_case(without_blanks(cut(rest, ',')), word)) return true;
   }
   return false;
 }

@@ -123,8 +123,8 @@ float as_float(double value) noexcept {
 UpdateHead head_of(const flow::Frame& frame) noexcept {
   UpdateHead head;
   head.state = static_cast<std::uint8_t>(
-      (frame.held ? 1U : 0U) | (frame.steps.in_hand ? 8U : 0U) | (frame.let_go[0] ? 16U : 0U) |
-      (frame.let_go[1] ? 32U : 0U) | (frame.symmetric ? 64U : 0U) |
+      (frame.held ? 1U : 0U) | (frame.steps.in_hand ? 8U : 0U) | (frame.released[0] ? 16U : 0U) |
+      (frame.released[1] ? 32U : 0U) | (frame.symmetric ? 64U : 0U) |
       (frame.function_count > 0 ? 128U : 0U));
   head.status = static_cast<std::uint8_t>(frame.status);
   head.tick = frame.tick;

@@ -166,10 +166,11 @@ void read_shape(TomlReader& reader, const toml::table& root, WearerShape& shape)
 
 void read_hand(TomlReader& reader, const toml::table& root, WearerCalibration& wearer) {
   const std::string hand = reader.text(root, "hand");
-  if (hand != "left" && hand != "right")
+  const auto side = side_named(hand);
+  if (!side)
     complain_if(reader, root["hand"].node() != nullptr ? *root["hand"].node() : root,
                 "hand " + in_quotes(hand), "must be \"left\" or \"right\"");
-  wearer.side = hand == "left" ? Side::left : Side::right;
+  wearer.side = side.value_or(Side::right);
   const toml::table* size = reader.table(root, "hand_size");
   if (size == nullptr) return;
   reader.allow_only(*size, {"length_m", "breadth_m"});

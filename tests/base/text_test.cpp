@@ -1,6 +1,8 @@
 #include <nendo/base/text.hpp>
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -48,6 +50,23 @@ TEST_SUITE("base/text") {
     CHECK(cut(rest, ',').empty());
     CHECK(fields_of("  x\ty  z ", 2).size() == 2);
     CHECK(fields_of(" \r").empty());
+  }
+
+  TEST_CASE("items are divided by single separators, and an empty text is one item") {
+    const auto items_of = [](std::string_view text) {
+      std::vector<std::string> items;
+      for (ItemReader reader(text, ','); !reader.has_ended();)
+        items.emplace_back(reader.next());
+      return items;
+    };
+    using Items = std::vector<std::string>;
+    CHECK(items_of("a,b") == Items{"a", "b"});
+    CHECK(items_of("a") == Items{"a"});
+    CHECK(items_of("") == Items{""});
+    CHECK(items_of(",a,,") == Items{"", "a", "", ""});
+    ItemReader reader("a", ',');
+    CHECK(reader.next() == "a");
+    CHECK(reader.next().empty());
   }
 
   TEST_CASE("a number is the whole field") {

@@ -392,4 +392,31 @@ TEST_CASE("deform/gltf_file/sparse numbers are in their places") {
   CHECK_FALSE(parse(square.file()));
 }
 
+TEST_CASE("deform/gltf_file/sparse numbers are normalised as the others of their accessor") {
+  Square square;
+  const std::size_t before = square.binary.size();
+  append<std::uint8_t>(square.binary, {2, 0, 0, 0, 255, 255, 255, 255});
+  square.json["buffers"][0]["byteLength"] = square.binary.size();
+  const std::size_t views = square.json["bufferViews"].size();
+  for (const std::size_t at : {before, before + 4})
+    square.json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", at}, {"byteLength", 4}});
+  square.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+      square.json["accessors"].size();
+  square.json["accessors"].push_back(
+      {{"componentType", 5121},
+       {"normalized", true},
+       {"count", 4},
+       {"type", "VEC4"},
+       {"sparse",
+        {{"count", 1},
+         {"indices", {{"bufferView", views}, {"componentType", 5121}}},
+         {"values", {{"bufferView", views + 1}}}}}});
+  const auto mesh = parse(square.file());
+  REQUIRE_MESSAGE(mesh, mesh.error().message);
+  const auto& colours = mesh->look.vertex_colours;
+  REQUIRE(colours.cols() == 4);
+  CHECK(colours.col(2).head<3>().isApproxToConstant(1.0F));
+  CHECK(colours.col(1).head<3>().isZero());
+}
+
 } // namespace gltf_file_test

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using nendo::test::random_points;
 
-TEST_SUITE("least gap") {
+TEST_SUITE("min_gap") {
   constexpr double fraction = 0.05;
   constexpr double radius = 10.0;
 

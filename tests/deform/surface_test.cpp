@@ -47,7 +47,7 @@ SurfaceSetup setup_on(const Mesh& mesh) {
   SurfaceSetup setup;
   for (const Vector3d& place : {Vector3d(2.1, 2.3, 0.0), Vector3d(5.0, 5.0, 0.0),
                                 Vector3d(7.4, 3.2, 0.0), Vector3d(3.0, 7.7, 0.0)})
-    setup.points.push_back({nearest_place(mesh, place), 4.0});
+    setup.points.push_back({nearest_position(mesh, place), 4.0});
   return setup;
 }
 
@@ -78,7 +78,7 @@ struct Stroked {
     shape = std::make_unique<SculptedShape>(made.layout, options, nullptr);
     deformer = std::make_unique<Type2Deformer>(*shape, made.field);
     for (Index i = 0; i < 4; ++i)
-      tips.col(i) = setup_on(mesh).points[static_cast<std::size_t>(i)].place.in(mesh.vertices);
+      tips.col(i) = setup_on(mesh).points[static_cast<std::size_t>(i)].position.in(mesh.vertices);
   }
   Points vertices() const {
     Points points;
@@ -118,7 +118,7 @@ TEST_SUITE("surface") {
   TEST_CASE("on a plane a distance is the straight one, or a few per cent more") {
     const Mesh mesh = test::grid(40, 10.0);
     const SurfaceGraph graph(mesh);
-    const SurfacePosition from = nearest_place(mesh, {3.21, 4.56, 0.0});
+    const SurfacePosition from = nearest_position(mesh, {3.21, 4.56, 0.0});
     const Eigen::VectorXd distances = graph.distances(from, infinity);
     const Eigen::VectorXd straight =
         (mesh.vertices.colwise() - from.in(mesh.vertices)).colwise().norm();
@@ -148,9 +148,9 @@ TEST_SUITE("surface") {
 
   TEST_CASE("the nearest place of a surface is the foot of the point") {
     const Mesh mesh = test::grid(7, 10.0);
-    const SurfacePosition place = nearest_place(mesh, {3.3, 8.1, 2.0});
+    const SurfacePosition place = nearest_position(mesh, {3.3, 8.1, 2.0});
     CHECK((place.in(mesh.vertices) - Vector3d(3.3, 8.1, 0.0)).norm() < 1e-12);
-    const SurfacePosition corner = nearest_place(mesh, {-4.0, -1.0, 1.0});
+    const SurfacePosition corner = nearest_position(mesh, {-4.0, -1.0, 1.0});
     CHECK(corner.in(mesh.vertices).norm() < 1e-12);
   }
 
@@ -163,13 +163,14 @@ TEST_SUITE("surface") {
     const SurfaceGraph graph(mesh);
     Eigen::MatrixXd functions(mesh.vertices.cols(), 4), at_points(4, 4);
     for (Index j = 0; j < 4; ++j) {
-      const auto distances = graph.distances(setup.points[static_cast<std::size_t>(j)].place, 4.0);
+      const auto distances =
+          graph.distances(setup.points[static_cast<std::size_t>(j)].position, 4.0);
       for (Index v = 0; v < distances.size(); ++v)
         functions(v, j) = wendland(Wendland::c2, distances[v] / 4.0);
     }
     for (Index i = 0; i < 4; ++i) {
       at_points.row(i).setZero();
-      const SurfacePosition& place = setup.points[static_cast<std::size_t>(i)].place;
+      const SurfacePosition& place = setup.points[static_cast<std::size_t>(i)].position;
       for (std::size_t k = 0; k < 3; ++k)
         at_points.row(i) += place.weights[k] * functions.row(place.corners[k]);
     }
@@ -178,7 +179,7 @@ TEST_SUITE("surface") {
     const Points moved = made.displaced(vectors);
     CHECK((moved - dense).cwiseAbs().maxCoeff() < 1e-5);
     for (Index i = 0; i < 4; ++i) {
-      const SurfacePosition& place = setup.points[static_cast<std::size_t>(i)].place;
+      const SurfacePosition& place = setup.points[static_cast<std::size_t>(i)].position;
       CHECK((place.in(moved)-place.in(mesh.vertices) - vectors.col(i)).norm() < 1e-5);
     }
     const Index half = mesh.vertices.cols() / 2; // the other sheet is near, but not on the way
@@ -219,8 +220,8 @@ TEST_SUITE("surface") {
   TEST_CASE("a part turns with its points, and one without points goes with the surface") {
     const Mesh mesh = two_sheets(0.5);
     SurfaceSetup setup = setup_on(mesh);
-    setup.points.push_back({nearest_place(mesh, {5.0, 2.0, 0.0}), 3.0});
-    setup.points[4].place = SurfacePosition::at_vertex(100);
+    setup.points.push_back({nearest_position(mesh, {5.0, 2.0, 0.0}), 3.0});
+    setup.points[4].position = SurfacePosition::at_vertex(100);
     const auto half = static_cast<std::uint32_t>(mesh.vertices.cols() / 2);
     std::vector<std::uint32_t> others;
     for (std::uint32_t vertex = half; vertex < 2 * half; ++vertex)
@@ -233,7 +234,7 @@ TEST_SUITE("surface") {
     move.translation() = Vector3d(0.2, -0.1, 0.4);
     Points vectors = Points::Zero(3, 5);
     for (Index i = 0; i < 4; ++i) {
-      const Vector3d at = setup.points[static_cast<std::size_t>(i)].place.in(mesh.vertices);
+      const Vector3d at = setup.points[static_cast<std::size_t>(i)].position.in(mesh.vertices);
       vectors.col(i) = move * at - at;
     }
     const Points moved = affine.displaced(vectors);
@@ -278,7 +279,7 @@ TEST_SUITE("surface") {
     };
     Points tips(3, 4);
     for (Index i = 0; i < 4; ++i)
-      tips.col(i) = setup_on(mesh).points[static_cast<std::size_t>(i)].place.in(mesh.vertices);
+      tips.col(i) = setup_on(mesh).points[static_cast<std::size_t>(i)].position.in(mesh.vertices);
     CHECK(deformer.apply(tips, out) == FieldStatus::singular); // nothing is held
     CHECK(vertices() == mesh.vertices);
     REQUIRE(deformer.grab(tips) == FieldStatus::ok);

@@ -84,14 +84,14 @@ TEST_SUITE("rig_loop") {
       CHECK((more[at] == bent[at]) == (functions[at].name == "turn"));
     test.commands.try_push(SetClutch{Side::right, puppet::RigPlayer::all_fingers, false});
     const auto left_only = after(5);
-    CHECK(test.loop->frames().front().let_go == std::array{false, true});
+    CHECK(test.loop->frames().front().released == std::array{false, true});
     for (std::size_t at = 0; at < functions.size(); ++at)
       CHECK((left_only[at] == more[at]) == (functions[at].input.side() == Side::right));
     test.commands.try_push(SetClutch{Side::right, puppet::RigPlayer::all_fingers, true});
     const auto again = after(5); // wherever the hand is, nothing leaps
     for (std::size_t at = 0; at < functions.size(); ++at)
       CHECK(again[at] == doctest::Approx(left_only[at]).epsilon(1e-6));
-    CHECK(test.loop->frames().front().let_go == std::array{false, false});
+    CHECK(test.loop->frames().front().released == std::array{false, false});
   }
 
   TEST_CASE("one hand plays both sides, and a function listens to another finger") {
@@ -162,10 +162,10 @@ TEST_SUITE("rig_loop") {
     after(0, WristSwitch::off);
     const Frame bent = after(12, WristSwitch::off);
     const Frame free = after(12, WristSwitch::on);
-    CHECK(free.let_go == std::array{false, true});
+    CHECK(free.released == std::array{false, true});
     CHECK(after(0, WristSwitch::off).functions == bent.functions);
     const Frame held = after(0, WristSwitch::on);
-    CHECK(held.let_go == std::array{false, false});
+    CHECK(held.released == std::array{false, false});
     for (std::size_t at = 0; at < held.function_count; ++at)
       CHECK(held.functions[at] ==
             doctest::Approx(static_cast<double>(bent.functions[at])).epsilon(1e-5));

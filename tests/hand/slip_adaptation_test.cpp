@@ -1,4 +1,4 @@
-#include <nendo/hand/range_adaptation.hpp>
+#include <nendo/hand/slip_adaptation.hpp>
 
 #include <algorithm>
 #include <array>

@@ -71,14 +71,14 @@ struct Played {
 
   void tick() {
     const std::vector<double> before(player.values().begin(), player.values().end());
-    const bool had_let_go = player.has_let_go(Side::left);
+    const bool had_released = player.has_released(Side::left);
     time += std::chrono::duration_cast<HostClock::duration>(std::chrono::duration<double>(dt_s));
     gestures.watch(player, hands(), time);
     player.follow(hands());
     plain.follow(hands());
     for (const std::size_t at : {left_index, left_ring})
       greatest_jump = std::max(greatest_jump, std::abs(player.values()[at] - before[at]));
-    changes += had_let_go != player.has_let_go(Side::left) ? 1 : 0;
+    changes += had_released != player.has_released(Side::left) ? 1 : 0;
   }
   /// The left hand goes there in that time, along half a cosine; the right one goes its own way.
   void go(double from, double to, double seconds) {
@@ -107,8 +107,8 @@ TEST_SUITE("gesture_clutch") {
     CHECK(index == doctest::Approx(0.5));
     played.go(60.0, 240.0, 0.3);
     played.stay(240.0, 0.6);
-    CHECK(played.player.has_let_go(Side::left));
-    CHECK_FALSE(played.player.has_let_go(Side::right));
+    CHECK(played.player.has_released(Side::left));
+    CHECK_FALSE(played.player.has_released(Side::right));
     CHECK(played.value(left_index) == doctest::Approx(index).epsilon(0.01));
     CHECK(played.value(left_ring) == doctest::Approx(ring).epsilon(0.01));
     const double kept = played.value(left_index);
@@ -118,10 +118,10 @@ TEST_SUITE("gesture_clutch") {
     CHECK(played.value(left_index) == kept); // as one lifts a mouse
     played.go(90.0, 240.0, 0.3);
     played.stay(240.0, 0.6);
-    CHECK(played.player.has_let_go(Side::left)); // until it is open
+    CHECK(played.player.has_released(Side::left)); // until it is open
     played.go(240.0, 10.0, 0.4);
     played.stay(10.0, 0.4);
-    CHECK_FALSE(played.player.has_let_go(Side::left));
+    CHECK_FALSE(played.player.has_released(Side::left));
     CHECK(played.value(left_index) == doctest::Approx(kept).epsilon(0.02));
     const double taken = played.value(left_index);
     played.go(10.0, 70.0, 0.5);
@@ -197,7 +197,7 @@ TEST_SUITE("gesture_clutch") {
       played.stay(230.0, 0.7);
       played.go(230.0, 60.0, 0.3);
       played.stay(60.0, 0.5);
-      CHECK(played.player.has_let_go(Side::left) == (round == 0));
+      CHECK(played.player.has_released(Side::left) == (round == 0));
     }
     const double index = played.value(left_index);
     played.go(60.0, 100.0, 0.4);

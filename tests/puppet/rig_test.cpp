@@ -86,7 +86,7 @@ deform::SurfacePosition place_of(const Rig& rig, std::string_view name, const de
   const auto at = std::find_if(points.begin(), points.end(),
                                [&](const auto& point) { return point.name == name; });
   REQUIRE(at != points.end());
-  return places_on(rig.puppet(), mesh)[static_cast<std::size_t>(at - points.begin())];
+  return positions_on(rig.puppet(), mesh)[static_cast<std::size_t>(at - points.begin())];
 }
 
 double asymmetry(const Points& shape, const Points& rest) {
@@ -201,7 +201,7 @@ TEST_SUITE("rig") {
     const auto rig = rig_of(text, mesh);
     auto shapes = RigShapes::make(rig, mesh);
     REQUIRE(shapes);
-    const auto places = places_on(rig->puppet(), mesh);
+    const auto places = positions_on(rig->puppet(), mesh);
     for (std::size_t function = 0; function < rig->puppet().functions.size(); ++function) {
       const Points shape = (*shapes)->at(function, 0.7);
       for (std::size_t at = 0; at < places.size(); ++at) {
@@ -298,7 +298,7 @@ TEST_SUITE("rig") {
                              "travel_deg = 50\nmove = { top = [0.0, 0.2, 0.1] }\n";
     auto shapes = RigShapes::make(rig_of(file, mesh), mesh);
     REQUIRE(shapes);
-    const auto place = deform::nearest_place(mesh, {0.0, 1.0, 0.0});
+    const auto place = deform::nearest_position(mesh, {0.0, 1.0, 0.0});
     const Eigen::VectorXd distances = deform::SurfaceGraph(mesh).distances(place, 2.0);
     const auto psi = [](double t) { // Wendland's, from the paper
       return t >= 1.0 ? 0.0 : std::pow(1.0 - t, 4) * (4.0 * t + 1.0);

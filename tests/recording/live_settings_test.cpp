@@ -42,7 +42,7 @@ struct Clenching {
   std::uint64_t tick = 0;
   int counts = 0;
   int changes = 0; ///< changes of the left hand's held functions
-  bool let_go = false;
+  bool released = false;
   Shapes shapes;
 
   void go_on(std::uint64_t ticks) {
@@ -56,7 +56,7 @@ struct Clenching {
       loop.frames().update();
       const flow::Frame& frame = loop.frames().front();
       shapes.push_back(live.test.vertices_of(frame));
-      changes += std::exchange(let_go, frame.let_go[0]) != frame.let_go[0] ? 1 : 0;
+      changes += std::exchange(released, frame.released[0]) != frame.released[0] ? 1 : 0;
     }
   }
 };

@@ -320,7 +320,7 @@ TEST_SUITE("follow") {
         moved = std::max(moved, (shape - streamed.test.model.vertices).cwiseAbs().maxCoeff());
         followed.pass();
         const flow::Frame& frame = streamed.test.loop->frames().front();
-        CHECK(client.let_go == frame.let_go);
+        CHECK(client.released == frame.released);
         CHECK(client.is_puppet);
         most = std::max(most, client.update_bytes);
         if (!followed.is_up_to_date()) continue;

@@ -127,9 +127,9 @@ public:
   std::array<std::uint32_t, 2> bad{}, delivered{}, missed{}, refused{}; ///< records of the gloves
   std::size_t update_bytes = 0;
   int shapes = 0, updates = 0;
-  int weights = 0;              ///< messages of them
-  std::uint64_t vectors = 0;    ///< that came in steps
-  std::array<bool, 2> let_go{}; ///< released hands of a puppet
+  int weights = 0;                ///< messages of them
+  std::uint64_t vectors = 0;      ///< that came in steps
+  std::array<bool, 2> released{}; ///< released hands of a puppet
   bool symmetric = false, is_puppet = false;
   std::string report;                ///< the last report of the server
   std::uint64_t implied_centres = 0; ///< centres that were left out
@@ -261,7 +261,7 @@ private:
     const auto state = in.take<std::uint8_t>();
     held = (state & 1U) != 0;
     uncalibrated = {(state & 2U) != 0, (state & 4U) != 0};
-    let_go = {(state & 16U) != 0, (state & 32U) != 0};
+    released = {(state & 16U) != 0, (state & 32U) != 0};
     symmetric = (state & 64U) != 0;
     is_puppet = (state & 128U) != 0;
     const auto hands = in.take<std::uint8_t>();

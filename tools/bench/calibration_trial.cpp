@@ -9,6 +9,7 @@
 #include <nendo/hand/pose_capture.hpp>
 #include <nendo/hand/range_adaptation.hpp>
 #include <nendo/hand/range_capture.hpp>
+#include <nendo/hand/slip_adaptation.hpp>
 
 #include "reference/wearers.hpp"
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <cstring>
 #include <utility>
@@ -13,6 +12,8 @@
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <nendo/base/number_in.hpp>
 
 namespace nendo::bench {
 
@@ -83,10 +84,9 @@ Result<flow::Histogram> parse_cyclictest(const std::string& json) {
     return bad;
   flow::Histogram histogram;
   for (const auto& [key, count] : thread["histogram"].items()) {
-    long long us = 0;
-    const auto [stopped, error] = std::from_chars(key.data(), key.data() + key.size(), us);
-    if (error != std::errc{} || !count.is_number_unsigned()) return bad;
-    histogram.record(std::chrono::microseconds(us), count.get<std::uint64_t>());
+    const auto us = number_in<long long>(key);
+    if (!us || !count.is_number_unsigned()) return bad;
+    histogram.record(std::chrono::microseconds(*us), count.get<std::uint64_t>());
   }
   if (histogram.count() == 0) return bad;
   return histogram;

@@ -2,13 +2,15 @@
 
 #include "bench/judge_bench.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
+
+#include <nendo/base/number_in.hpp>
+#include <nendo/base/text.hpp>
 
 #include "bench/bench.hpp"
 #include "bench/calibration_judge.hpp"
@@ -37,18 +39,15 @@ constexpr std::array<std::array<double, 2>, judged_groups.size()> goals{{{2.0, 5
 
 /// The true hand of a stranger, who is known by the name. Error: bad_input, of others.
 Result<StrangerHand> true_hand(const JudgedWearer& wearer) {
-  std::uint64_t seed = 0;
-  const std::string_view name = wearer.name;
-  constexpr std::string_view before = "stranger ";
-  const char* const end = name.data() + name.size();
-  const bool numbered = name.starts_with(before) &&
-                        std::from_chars(name.data() + before.size(), end, seed).ptr == end;
+  std::string_view name = wearer.name;
+  const bool is_stranger = cut(name, ' ') == "stranger";
+  const auto seed = number_in<std::uint64_t>(name);
   const Error other{
       Errc::bad_input,
       wearer.name +
           ": not written by `nendo bench wearers`, so its true hand is unknown; leave out --floor"};
-  if (!numbered) return other;
-  StrangerHand hand = hand_of_stranger(seed);
+  if (!is_stranger || !seed) return other;
+  StrangerHand hand = hand_of_stranger(*seed);
   constexpr double rounded_m = 1e-5; // in the file
   for (std::size_t digit = 0; digit < wearer.pads.size(); ++digit)
     if (!(std::abs(hand.pads()[digit].depth - wearer.pads[digit].depth_m) < rounded_m))

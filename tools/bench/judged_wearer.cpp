@@ -124,9 +124,9 @@ JudgedWearer wearer_of(const Json& object) {
   if (!object.is_object()) throw Wrong{"not a JSON object"};
   JudgedWearer wearer;
   wearer.name = text_of(object, "name");
-  const std::string side = text_of(object, "hand");
-  if (side != "left" && side != "right") throw Wrong{"\"hand\" is neither left nor right"};
-  wearer.side = side == "left" ? Side::left : Side::right;
+  const auto side = side_named(text_of(object, "hand"));
+  if (!side) throw Wrong{"\"hand\" is neither left nor right"};
+  wearer.side = *side;
   for (const Json& name : list(object, "sensors", sensor_slots)) {
     if (!name.is_string()) throw Wrong{"sensors: not a list of names"};
     const auto sensor = sensor_named(name.get<std::string>());

@@ -121,8 +121,8 @@ Result<void> beside_cyclictest(const RtOptions& options, const deform::Mesh& mod
     (*outcome)->tally[stress::Measure::lateness].raw.for_each(add(ours));
   }
   if (!options.json) {
-    cli::print("  loop p50 {:.1f} us, p99 {:.1f} us; cyclictest {:.0f} us, {:.0f} us (rounded up "
-               "to microseconds)\n",
+    cli::print("  loop p50 {:.1f} us, p99 {:.1f} us; cyclictest {:.0f} us, {:.0f} us (in whole "
+               "microseconds)\n",
                us(ours, 0.5), us(ours, 0.99), us(theirs, 0.5), us(theirs, 0.99));
   }
   report_figure(options, "loop / cyclictest", "p50 ratio", us(ours, 0.5) / us(theirs, 0.5), 1.2);

@@ -5,12 +5,10 @@ namespace nendo::bench {
 std::vector<StrangerRead> stranger_reads() {
   std::vector<StrangerRead> reads{{Sensor::thumb_roll, Sensor::thumb_abduction, -0.1, 0.2, false},
                                   {Sensor::thumb_abduction, Sensor::thumb_roll, 0.1, 0.15, false}};
-  constexpr std::array gaps{Sensor::index_middle_abduction, Sensor::middle_ring_abduction,
-                            Sensor::ring_little_abduction};
   constexpr auto first = static_cast<std::size_t>(Sensor::index_mcp);
-  for (std::size_t k = 0; k < gaps.size(); ++k) {
-    reads.push_back({gaps[k], static_cast<Sensor>(first + 4 * k), 0.08, 0.08, false});
-    reads.push_back({gaps[k], static_cast<Sensor>(first + 4 * k + 4), 0.08, 0.08, false});
+  for (std::size_t k = 0; k < gap_sensors.size(); ++k) {
+    reads.push_back({gap_sensors[k], static_cast<Sensor>(first + 4 * k), 0.08, 0.08, false});
+    reads.push_back({gap_sensors[k], static_cast<Sensor>(first + 4 * k + 4), 0.08, 0.08, false});
   }
   for (std::size_t n = first; n < static_cast<std::size_t>(Sensor::palm_arch); ++n)
     if (stranger_joints[n].gain != 0.0 && n % 4 != 3)

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdio>
+#include <utility>
+
+#include <nendo/base/endings.hpp>
 
 namespace nendo::udev {
 namespace {
@@ -74,8 +76,7 @@ const UsbAdapter* find_usb_adapter(UsbId id) noexcept {
 }
 
 bool names_a_glove(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  text = to_lower(std::move(text));
   return std::any_of(names.begin(), names.end(),
                      [&](std::string_view name) { return text.find(name) != std::string::npos; });
 }

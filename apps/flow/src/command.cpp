@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <nendo/base/text.hpp>
 #include <nendo/flow/setting.hpp>
 
 namespace nendo::flow {
@@ -30,9 +31,7 @@ std::string_view name_of(MaskEdit edit) noexcept {
 }
 
 std::optional<MaskEdit> mask_edit_named(std::string_view name) noexcept {
-  const auto* const found = std::find(mask_edit_names.begin(), mask_edit_names.end(), name);
-  if (found == mask_edit_names.end()) return std::nullopt;
-  return static_cast<MaskEdit>(found - mask_edit_names.begin());
+  return enumerator_named<MaskEdit>(mask_edit_names, name);
 }
 
 bool SetMask::is_usable() const noexcept {

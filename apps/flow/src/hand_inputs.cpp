@@ -30,15 +30,14 @@ std::optional<AngleSet> angles_named(std::string_view part) noexcept {
 
 std::optional<std::array<AngleSet, 2>> parse_layer(std::string_view text) noexcept {
   std::array<AngleSet, 2> hands{};
-  for (bool is_last = false; !is_last;) {
-    is_last = text.find(',') == std::string_view::npos;
-    std::string_view part = cut(text, ',');
+  for (ItemReader items(text, ','); !items.has_ended();) {
+    std::string_view part = items.next();
     const bool is_whole = part.find('.') == std::string_view::npos;
-    const std::string_view side = cut(part, '.');
-    if (side != "left" && side != "right") return std::nullopt;
+    const auto side = side_named(cut(part, '.'));
+    if (!side) return std::nullopt;
     const auto angles = is_whole ? std::optional(AngleSet::all()) : angles_named(part);
     if (!angles) return std::nullopt;
-    hands[side == "left" ? 0 : 1].bits |= angles->bits;
+    hands[Placement::index_of(*side)].bits |= angles->bits;
   }
   return hands;
 }

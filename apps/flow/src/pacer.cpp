@@ -8,6 +8,7 @@
 
 #include <nendo/base/atomics.hpp>
 #include <nendo/base/number_in.hpp>
+#include <nendo/base/text.hpp>
 
 namespace nendo::flow {
 
@@ -111,16 +112,15 @@ Result<void> parse_policy(std::string_view text, PaceOptions& options) {
   const Error unknown{Errc::usage, std::string(text) + ": use skip, catch-up:N with N from 1 to " +
                                        std::to_string(max_burst) + ", re-anchor or sample"};
   const std::size_t colon = text.find(':');
-  const auto name = std::find(policy_names.begin(), policy_names.end(), text.substr(0, colon));
-  if (name == policy_names.end()) return unknown;
-  const auto policy = static_cast<OverrunPolicy>(name - policy_names.begin());
+  const auto policy = enumerator_named<OverrunPolicy>(policy_names, text.substr(0, colon));
+  if (!policy) return unknown;
   if (colon != std::string_view::npos) {
     const auto most = number_in<unsigned>(text.substr(colon + 1));
-    if (policy != OverrunPolicy::catch_up || !most || *most < 1 || *most > max_burst)
+    if (*policy != OverrunPolicy::catch_up || !most || *most < 1 || *most > max_burst)
       return unknown;
     options.max_catch_up = *most;
   }
-  options.policy = policy;
+  options.policy = *policy;
   return {};
 }
 

@@ -82,10 +82,8 @@ Result<std::vector<unsigned>> parse_cpus(const std::string& text, const std::str
   const Error bad{Errc::usage, option + " " + text + ": use CPUs from 0 to " +
                                    std::to_string(count - 1) + ", like 0 or 0,1 or 0-1"};
   std::vector<unsigned> cpus;
-  std::string_view rest = text;
-  for (bool is_last = false; !is_last;) {
-    is_last = rest.find(',') == std::string_view::npos;
-    std::string_view item = cut(rest, ',');
+  for (ItemReader items(text, ','); !items.has_ended();) {
+    std::string_view item = items.next();
     const bool is_one = item.find('-') == std::string_view::npos;
     const auto first = number_in<unsigned>(cut(item, '-'));
     const auto last = is_one ? first : number_in<unsigned>(item);
@@ -102,7 +100,7 @@ std::vector<std::string> refusals(const std::vector<Grant>& grants) {
   std::vector<std::string> lines;
   for (const Grant& grant : grants) {
     if (!grant.granted)
-      lines.push_back(grant.wanted + " refused (" + grant.why + "); to have it, " + grant.remedy);
+      lines.push_back(grant.wanted + " refused (" + grant.why + "); to get it, " + grant.remedy);
   }
   return lines;
 }

@@ -133,9 +133,8 @@ std::optional<Hold> hold_named(std::string_view name) noexcept {
 std::optional<std::array<deform::Brush, 5>> parse_brushes(std::string_view text) noexcept {
   std::array<deform::Brush, 5> brushes{};
   std::size_t count = 0;
-  for (bool ended = false; !ended; ++count) {
-    ended = text.find(',') == std::string_view::npos;
-    const auto brush = deform::brush_named(cut(text, ','));
+  for (ItemReader items(text, ','); !items.has_ended(); ++count) {
+    const auto brush = deform::brush_named(items.next());
     if (!brush || count == brushes.size()) return std::nullopt;
     brushes[count] = *brush;
   }

@@ -212,14 +212,14 @@ void ShapingCore::place_bodies(const Hands& hands) noexcept {
 
 void ShapingCore::show_puppet(Frame& frame) const noexcept {
   if (!puppet_) {
-    frame.let_go = {};
+    frame.released = {};
     frame.symmetric = mirror_.has_value();
     frame.function_count = 0;
     return;
   }
   const puppet::RigPlayer& player = puppet_->player();
   for (const Side side : {Side::left, Side::right})
-    frame.let_go[Placement::index_of(side)] = player.has_let_go(side);
+    frame.released[Placement::index_of(side)] = player.has_released(side);
   frame.symmetric = player.state().symmetric;
   frame.function_count = static_cast<std::uint32_t>(player.values().size());
   for (std::size_t at = 0; at < player.values().size(); ++at)

@@ -5,6 +5,7 @@
 #include <nendo/flow/shaping.hpp>
 
 #include <algorithm>
+#include <array>
 
 #include <nendo/deform/sculpted_shape.hpp>
 
@@ -146,6 +147,7 @@ static StepKind kind_of(ModelSource source) noexcept {
   constexpr std::array kinds{StepKind::subdivide, StepKind::subdivide, StepKind::refine,
                              StepKind::cut,       StepKind::join,      StepKind::copy,
                              StepKind::remove,    StepKind::topology};
+  static_assert(kinds.size() == static_cast<std::size_t>(ModelSource::topology) + 1);
   return kinds[static_cast<std::size_t>(source)];
 }
 

@@ -170,10 +170,9 @@ private:
     for (const std::uint32_t part : parts)
       found_.is_skin.push_back(largest != sizes.end() && part == largest->first);
     for (std::size_t face = 0; face < model.face_count(); ++face) {
-      const auto begin = model.face_corners.begin() + model.face_starts[face];
-      const auto end = model.face_corners.begin() + model.face_starts[face + 1];
-      if (begin == end || !found_.is_skin[*begin]) continue;
-      skin.face_corners.insert(skin.face_corners.end(), begin, end);
+      const auto corners = model.corners_of(face);
+      if (corners.empty() || !found_.is_skin[corners[0]]) continue;
+      skin.face_corners.insert(skin.face_corners.end(), corners.begin(), corners.end());
       skin.face_starts.push_back(static_cast<std::uint32_t>(skin.face_corners.size()));
     }
     return skin;
@@ -255,7 +254,8 @@ private:
 
   /// How much longer the way along the skin is than that through the air.
   double detour(const Vector3d& from, const Vector3d& to) const {
-    const auto start = deform::nearest_place(skin_, from), end = deform::nearest_place(skin_, to);
+    const auto start = deform::nearest_position(skin_, from),
+               end = deform::nearest_position(skin_, to);
     const double air = (start.in(skin_.vertices) - end.in(skin_.vertices)).norm();
     if (!(air > 0.0)) return 1.0;
     constexpr double most = 4.0;

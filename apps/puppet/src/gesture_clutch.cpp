@@ -71,7 +71,7 @@ void GestureClutch::look(RigPlayer& player, Side side, const RigPlayer::Hands& h
   advance(watch, player, side, hands, strength);
   const double step = passed_s / ease_s;
   watch.ramp = std::clamp(watch.ramp + (watch.state == State::made ? step : -step), 0.0, 1.0);
-  if (player.has_let_go(side)) watch.ramp = 0.0; // nothing is followed, and nothing to be kept
+  if (player.has_released(side)) watch.ramp = 0.0; // nothing is followed, and nothing to be kept
   player.set_kept(side, smooth(watch.ramp), watch.kept);
   watch.note(player, strength, watch.ramp == 0.0);
 }
@@ -83,7 +83,7 @@ void GestureClutch::advance(Watch& watch, RigPlayer& player, Side side,
   const double ends_at = means == ClutchTrigger::fist ? fist_ends_at : pinch_ends_at;
   const bool begins = strength >= bound(means);
   const bool ends = strength < ends_at * bound(means);
-  const bool has_let_go = player.has_let_go(side);
+  const bool has_released = player.has_released(side);
   switch (watch.state) {
   case State::unknown:
     watch.go_to(ends ? State::open : State::done);
@@ -96,8 +96,8 @@ void GestureClutch::advance(Watch& watch, RigPlayer& player, Side side,
   case State::made:
     if (ends) watch.go_to(State::open);
     if (ends || watch.lasted_s() < options_.held_s) break;
-    if (!has_let_go) player.toggle_clutch(side, hands);
-    watch.go_to(has_let_go ? State::taking : State::done);
+    if (!has_released) player.toggle_clutch(side, hands);
+    watch.go_to(has_released ? State::taking : State::done);
     break;
   case State::done:
     if (ends) watch.go_to(State::open);
@@ -108,7 +108,7 @@ void GestureClutch::advance(Watch& watch, RigPlayer& player, Side side,
   case State::opening:
     if (begins) watch.go_to(State::taking);
     if (begins || !rests(watch, means, strength)) break;
-    if (has_let_go) player.toggle_clutch(side, hands);
+    if (has_released) player.toggle_clutch(side, hands);
     watch.go_to(State::open);
     break;
   }

@@ -149,7 +149,7 @@ private:
   }
   /// A place, or the skin's vertex, where another part of the model, such as lashes, is nearer.
   std::string place_text(const Vector3d& at) const {
-    const auto nearest = deform::nearest_place(model_, at);
+    const auto nearest = deform::nearest_position(model_, at);
     if (face_.is_skin[nearest.corners[0]]) return "at = " + vector_text(at, face_.unit);
     Eigen::Index best = 0;
     double least = -1.0;
@@ -191,7 +191,7 @@ private:
   Vector3d lower_side(const MouthPlaces& mouth) const {
     const Vector3d wanted = mouth.lower + 0.4 * (mouth.corner - mouth.lower) +
                             Vector3d(0.32 * mouth.corner.x(), 0.0, 0.0);
-    return deform::nearest_place(model_, wanted).in(model_.vertices);
+    return deform::nearest_position(model_, wanted).in(model_.vertices);
   }
 
   Vector3d scaled(double x, double y, double z) const { return face_.unit * Vector3d(x, y, z); }

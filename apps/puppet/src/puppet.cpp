@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <set>
 #include <tuple>
@@ -139,7 +140,7 @@ double passes(const Mask& mask, const Vector3d& place) {
 /// The nearest place of the edges in the plane x = 0, if they are about as near as any: a point in
 /// the middle then is its own mirror image, also where the nearest places are two, beside it.
 SurfacePosition nearest_in_middle(const Mesh& model, const Vector3d& at) {
-  const SurfacePosition nearest = deform::nearest_place(model, at);
+  const SurfacePosition nearest = deform::nearest_position(model, at);
   const double near = 1e-3 * deform::diagonal_of(model.vertices);
   double least = (nearest.in(model.vertices) - at).norm() + near;
   SurfacePosition best = nearest;
@@ -161,8 +162,8 @@ SurfacePosition nearest_in_middle(const Mesh& model, const Vector3d& at) {
 }
 
 /// A twin is on the same part of the surface: beside the skin of a lid there are lashes and eyes.
-std::vector<SurfacePosition> places_on(const Puppet& puppet, const Mesh& model,
-                                       const std::vector<std::uint32_t>& parts) {
+std::vector<SurfacePosition> positions_on(const Puppet& puppet, const Mesh& model,
+                                          const std::vector<std::uint32_t>& parts) {
   const auto vertices = static_cast<std::uint32_t>(model.vertices.cols());
   std::vector<SurfacePosition> places;
   for (const PuppetPoint& point : puppet.points) {
@@ -170,9 +171,9 @@ std::vector<SurfacePosition> places_on(const Puppet& puppet, const Mesh& model,
     Vector3d at = at_vertex ? Vector3d(model.vertices.col(*point.vertex)) : point.at;
     if (point.is_mirrored) {
       const std::uint32_t of =
-          at_vertex ? *point.vertex : deform::nearest_place(model, at).corners[0];
+          at_vertex ? *point.vertex : deform::nearest_position(model, at).corners[0];
       at.x() = -at.x();
-      places.push_back(deform::nearest_place(model, at, parts, parts[of]));
+      places.push_back(deform::nearest_position(model, at, parts, parts[of]));
       continue;
     }
     if (at_vertex)
@@ -180,7 +181,7 @@ std::vector<SurfacePosition> places_on(const Puppet& puppet, const Mesh& model,
     else if (at.x() == 0.0)
       places.push_back(nearest_in_middle(model, at));
     else
-      places.push_back(deform::nearest_place(model, at));
+      places.push_back(deform::nearest_position(model, at));
   }
   return places;
 }
@@ -239,8 +240,8 @@ Result<void> check_fits(const Puppet& puppet, const Mesh& model) {
   return {};
 }
 
-std::vector<SurfacePosition> places_on(const Puppet& puppet, const Mesh& model) {
-  return places_on(puppet, model, deform::SurfaceGraph(model).parts());
+std::vector<SurfacePosition> positions_on(const Puppet& puppet, const Mesh& model) {
+  return positions_on(puppet, model, deform::SurfaceGraph(model).parts());
 }
 
 deform::SurfaceSetup surface_setup(const Puppet& puppet, const Mesh& model,
@@ -248,7 +249,7 @@ deform::SurfaceSetup surface_setup(const Puppet& puppet, const Mesh& model,
   deform::SurfaceSetup setup;
   setup.kernel = kernel;
   const auto parts = deform::SurfaceGraph(model).parts();
-  const auto places = places_on(puppet, model, parts);
+  const auto places = positions_on(puppet, model, parts);
   for (std::size_t at = 0; at < places.size(); ++at)
     setup.points.push_back(
         {places[at], puppet.points[at].radius, puppet.points[at].name, puppet.points[at].mix});
@@ -286,7 +287,7 @@ constexpr double max_alone = 0.05; // of them
 double part_alone(const Points& vertices, const std::vector<Index>& by_x, double at) {
   const double near = tolerance * deform::diagonal_of(vertices);
   const Index step = std::max<Index>(1, vertices.cols() / max_looked_at);
-  const auto x_of = [&](Index at) { return vertices(0, at); };
+  const auto x_of = [&](Index vertex) { return vertices(0, vertex); };
   Index looked_at = 0, alone = 0;
   for (Index v = 0; v < vertices.cols(); v += step, ++looked_at) {
     Vector3d image = vertices.col(v);

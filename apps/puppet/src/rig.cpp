@@ -63,7 +63,7 @@ double asked_for(const Function& function, double value) noexcept {
 
 Rig::Rig(Puppet puppet, const deform::Mesh& model) : puppet_(std::move(puppet)) {
   std::vector<deform::SurfacePosition> places;
-  if (puppet_.is_played()) places = places_on(puppet_, model);
+  if (puppet_.is_played()) places = positions_on(puppet_, model);
   starts_.resize(3, static_cast<Index>(places.size()));
   for (std::size_t at = 0; at < places.size(); ++at)
     starts_.col(static_cast<Index>(at)) = places[at].in(model.vertices);
@@ -187,7 +187,7 @@ void RigPlayer::set_clutch(Side side, std::uint8_t finger, bool holds,
 
 void RigPlayer::toggle_clutch(Side side, const Hands& hands) noexcept {
   bool& hand_holds = state_.hand_holds[static_cast<std::size_t>(side)];
-  if (hand_holds && has_let_go(side)) return set_clutch(side, all_fingers, true, hands);
+  if (hand_holds && has_released(side)) return set_clutch(side, all_fingers, true, hands);
   hand_holds = !hand_holds;
   ++grips_[static_cast<std::size_t>(side)];
   for (std::size_t at = 0; at < holds_.size(); ++at)
@@ -242,7 +242,7 @@ void RigPlayer::continue_from(const RigPlayer& before, std::span<const std::size
   set_values();
 }
 
-bool RigPlayer::has_let_go(Side side) const noexcept {
+bool RigPlayer::has_released(Side side) const noexcept {
   return std::ranges::none_of(state_.functions, [&](const auto& state) {
     return state.input.side() == side && is_held(state);
   });

@@ -30,13 +30,13 @@ constexpr std::chrono::milliseconds drain_time{20};
 /// Returns how many bytes of memory a span may take. Gloves are counted as twice as fast as they
 /// say, and as sending at least 250 samples per second.
 std::size_t memory_for(const Setup& setup, HostClock::duration span) {
-  constexpr double sample_bytes = 88.0;
-  constexpr double tick_bytes = 26.0;
+  constexpr double sample_entry_bytes = 88.0;
+  constexpr double tick_entry_bytes = 26.0;
   constexpr double min_rate_hz = 250.0;
   double bytes_s = 1000.0;
   for (const auto& glove : setup.gloves)
-    bytes_s += sample_bytes * std::max(2.0 * glove.rate_hz, min_rate_hz);
-  if (setup.loop) bytes_s += tick_bytes * setup.loop->options.rate_hz;
+    bytes_s += sample_entry_bytes * std::max(2.0 * glove.rate_hz, min_rate_hz);
+  if (setup.loop) bytes_s += tick_entry_bytes * setup.loop->options.rate_hz;
   constexpr double max_bytes = 1e9;
   return static_cast<std::size_t>(std::min(max_bytes, bytes_s * (to_seconds(span) + 2.0)));
 }

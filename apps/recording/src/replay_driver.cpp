@@ -263,7 +263,7 @@ Result<std::unique_ptr<driver::Glove>> open_recording(const driver::GloveSpec& s
 }
 
 bool is_table(const std::string& name) {
-  const std::string ending = in_small_letters(std::filesystem::path(name).extension().string());
+  const std::string ending = to_lower(std::filesystem::path(name).extension().string());
   return ending == ".csv" || ending == ".tsv" || ending == ".txt";
 }
 

@@ -34,7 +34,7 @@ bool set_flags(GloveSample& sample, unsigned flags) noexcept {
   return position <= static_cast<unsigned>(WristSwitch::on) && flags >> 5U == 0;
 }
 
-void fields_of_sample(auto& fields, auto& recorded) {
+void sample_fields(auto& fields, auto& recorded) {
   auto& sample = recorded.sample;
   fields.u8(recorded.glove);
   fields.time(sample.arrival);
@@ -90,17 +90,17 @@ std::optional<LogEntry> LogEntries::next() noexcept {
   return record;
 }
 
-void sample_fields(FieldWriter& fields, const RecordedSample& recorded) {
-  fields_of_sample(fields, recorded);
+void sample_body(FieldWriter& fields, const RecordedSample& recorded) {
+  sample_fields(fields, recorded);
 }
 
-void sample_fields(FieldReader& fields, RecordedSample& recorded) {
-  fields_of_sample(fields, recorded);
+void sample_body(FieldReader& fields, RecordedSample& recorded) {
+  sample_fields(fields, recorded);
 }
 
 std::optional<RecordedSample> sample_of(const LogEntry& record) noexcept {
   if (!record.is(EntryKind::sample)) return std::nullopt;
-  return read_value<RecordedSample>(record.body, fields_of_sample<FieldReader, RecordedSample>);
+  return read_value<RecordedSample>(record.body, sample_fields<FieldReader, RecordedSample>);
 }
 
 void put_glove(ByteWriter& writer, const RecordedGlove& glove) {

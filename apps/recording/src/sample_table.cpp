@@ -47,7 +47,7 @@ bool is_exported_beside(std::string_view name) {
 }
 
 std::optional<Side> side_of(std::string_view cell) {
-  const std::string word = in_small_letters(std::string(cell));
+  const std::string word = to_lower(std::string(cell));
   if (word == "left" || word == "l") return Side::left;
   if (word == "right" || word == "r") return Side::right;
   return std::nullopt;

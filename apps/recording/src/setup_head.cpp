@@ -112,7 +112,7 @@ void hand_fields(auto& fields, auto& hand, auto& own, auto& other, std::uint8_t 
   fields.one_of(hand.side, Side::right);
   size_fields(fields, own.size);
   RecordedSample first{number, hand.first};
-  sample_fields(fields, first);
+  sample_body(fields, first);
   fields.require(first.glove == number);
   if constexpr (reads) hand.first = first.sample;
   fields.flag(hand.gated);

@@ -25,8 +25,8 @@ constexpr bool is_setup_chunk(ChunkType type) noexcept {
 
 // The bodies of entries.
 inline constexpr std::size_t sample_bytes = 86;
-void sample_fields(FieldWriter& fields, const RecordedSample& recorded);
-void sample_fields(FieldReader& fields, RecordedSample& recorded);
+void sample_body(FieldWriter& fields, const RecordedSample& recorded);
+void sample_body(FieldReader& fields, RecordedSample& recorded);
 inline constexpr std::size_t settings_bytes = 98;
 void settings_body(FieldWriter& fields, const flow::LoopSettings& settings);
 void settings_body(FieldReader& fields, flow::LoopSettings& settings);

@@ -26,7 +26,7 @@ struct FormatOf {
 
 template <>
 struct Format<RecordedSample> : FormatOf<EntryKind::sample, sample_bytes> {
-  static void put(auto& fields, auto& sample) { sample_fields(fields, sample); }
+  static void put(auto& fields, auto& sample) { sample_body(fields, sample); }
 };
 
 template <>

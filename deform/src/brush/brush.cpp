@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include <nendo/base/text.hpp>
+
 namespace nendo::deform {
 
 namespace {
@@ -17,9 +19,7 @@ std::string_view name_of(Brush brush) noexcept {
 }
 
 std::optional<Brush> brush_named(std::string_view name) noexcept {
-  const auto found = std::find(brush_names.begin(), brush_names.end(), name);
-  if (found == brush_names.end()) return std::nullopt;
-  return static_cast<Brush>(found - brush_names.begin());
+  return enumerator_named<Brush>(brush_names, name);
 }
 
 std::string brush_words() {

@@ -1,7 +1,6 @@
 #include <nendo/deform/vertex_rings.hpp>
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include <nendo/deform/triangles.hpp>
@@ -37,8 +36,7 @@ void VertexRings::find_rings(const Mesh& mesh, const BlockLayout& layout) {
     const auto second = at(b);
     return std::lexicographical_compare(first.begin(), first.end(), second.begin(), second.end());
   };
-  std::vector<std::uint32_t> sorted(order.size());
-  std::iota(sorted.begin(), sorted.end(), 0U);
+  std::vector<std::uint32_t> sorted = all_indices(order.size());
   std::sort(sorted.begin(), sorted.end(), is_before);
   ring_.resize(order.size());
   std::uint32_t ring = 0;

@@ -126,7 +126,7 @@ void ClayDeformer::Work::take_hold(const BoundedShape& shape,
   for (ContactLoad& load : loads_)
     load.clear();
   for (Grip& grip : grips_)
-    grip.let_go();
+    grip.release();
   leave_out_held(true);
   if (volume_.is_closed()) volume_now_ = whole_volume_ = volume_.volume(shape);
   contacts_.clear();

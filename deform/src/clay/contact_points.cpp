@@ -30,12 +30,6 @@ bool is_deeper(const NearVertex& a, const NearVertex& b) noexcept {
 
 } // namespace
 
-Eigen::Vector3d normal_from(const Eigen::Vector3f& centre, const Eigen::Vector3d& place) noexcept {
-  const Eigen::Vector3d way = place - centre.cast<double>();
-  const double length = way.norm();
-  return length > 0.0 ? Eigen::Vector3d(way / length) : Eigen::Vector3d::UnitZ();
-}
-
 ContactPoints::ContactPoints(std::size_t most) : slots_(std::bit_ceil(slots_per_point * most)) {
   vertices_.reserve(cells_per_point * most);
   chosen_.reserve(most);

@@ -36,7 +36,12 @@ struct NearVertex {
 };
 
 /// Returns the normal of a part at a place, away from the centre of its nearest ball.
-Eigen::Vector3d normal_from(const Eigen::Vector3f& centre, const Eigen::Vector3d& place) noexcept;
+inline Eigen::Vector3d normal_from(const Eigen::Vector3f& centre,
+                                   const Eigen::Vector3d& place) noexcept {
+  const Eigen::Vector3d way = place - centre.cast<double>();
+  const double length = way.norm();
+  return length > 0.0 ? Eigen::Vector3d(way / length) : Eigen::Vector3d::UnitZ();
+}
 
 /// Nothing depends on an order of memory or of a hash, so that a replay chooses the same.
 class ContactPoints {

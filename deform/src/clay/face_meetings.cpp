@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
-#include <numeric>
 
 #include "geometry/triangle_meeting.hpp"
 #include "simd/contact_kernels.hpp"
@@ -131,8 +130,7 @@ void FaceMeetings::order_by_x(const BlockLayout& layout) {
     double& low = lows[place / block_size];
     low = std::min(low, layout.original()(0, layout.order()[place]));
   }
-  order_.resize(lows.size());
-  std::iota(order_.begin(), order_.end(), 0U);
+  order_ = all_indices(lows.size());
   std::sort(order_.begin(), order_.end(),
             [&](std::uint32_t one, std::uint32_t other) { return lows[one] < lows[other]; });
 }

@@ -142,7 +142,7 @@ void Grip::take(std::span<const ContactPart> parts) noexcept {
     }
     if (is_first) held_side_ = held_.size();
   }
-  if (held_side_ == 0 || held_side_ == held_.size()) return let_go();
+  if (held_side_ == 0 || held_side_ == held_.size()) return release();
   for (const HeldPoint& point : held_)
     sides_[point.part - first_part_].is_held = true;
   narrowest_ = across(parts).norm();
@@ -157,7 +157,7 @@ bool Grip::end_look(std::span<const ContactPart> parts) noexcept {
     sides_[side].frame = parts[first_part_ + side].frame;
   calls_ = is_changing ? calls_ + 1 : 0;
   if (calls_ < calls_to_change) return false;
-  held ? let_go() : take(parts);
+  held ? release() : take(parts);
   calls_ = 0;
   return held != holds();
 }
@@ -181,7 +181,7 @@ void Grip::take_over(const Grip& other, double scale, const Vector3d& origin) no
   }
 }
 
-void Grip::let_go() noexcept {
+void Grip::release() noexcept {
   held_.clear();
   held_side_ = 0;
   calls_ = 0;

@@ -37,7 +37,7 @@ public:
   /// Ends the look and grabs or releases. `parts` are all parts with the frames that carry what
   /// is held. Returns true if that changed.
   bool end_look(std::span<const ContactPart> parts) noexcept;
-  void let_go() noexcept;
+  void release() noexcept;
   /// Holds what another grip of a body of as many parts holds, in coordinates that are `scale`
   /// times as large, with `origin` added.
   void take_over(const Grip& other, double scale, const Eigen::Vector3d& origin) noexcept;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <nendo/deform/dense.hpp>
+#include "solver/decompositions.hpp"
 
 namespace nendo::deform {
 

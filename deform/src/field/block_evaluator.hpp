@@ -22,12 +22,6 @@ struct NENDO_API BoundedShape {
   double extent = 0.0;             ///< no coordinate is larger
 };
 
-inline void set_vertex(VertexBlock& block, std::size_t lane, const Eigen::Vector3f& to) noexcept {
-  block.x[lane] = to.x();
-  block.y[lane] = to.y();
-  block.z[lane] = to.z();
-}
-
 /// Makes what a block has beyond its `used` vertices equal to the last of these, as
 /// BlockLayout::pack() does.
 inline void repeat_last(VertexBlock& block, std::size_t used) noexcept {

@@ -1,5 +1,6 @@
 // Fields of Wendland's functions, evaluated in double, and the names of the functions.
 
+#include <nendo/base/text.hpp>
 #include <nendo/deform/field.hpp>
 
 #include <algorithm>
@@ -97,9 +98,7 @@ std::string_view name_of(Wendland kernel) noexcept {
 }
 
 std::optional<Wendland> wendland_named(std::string_view name) noexcept {
-  const auto found = std::find(wendland_names.begin(), wendland_names.end(), name);
-  if (found == wendland_names.end()) return std::nullopt;
-  return static_cast<Wendland>(found - wendland_names.begin());
+  return enumerator_named<Wendland>(wendland_names, name);
 }
 
 Eigen::Vector3d CsrbfField::displacement_at(const Eigen::Vector3d& x) const noexcept {

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <limits>
 
-#include <nendo/deform/dense.hpp>
+#include "solver/decompositions.hpp"
 
 namespace nendo::deform {
 
@@ -53,7 +53,7 @@ MatrixXd functions_on(const Mesh& mesh, const SurfaceSetup& setup) {
   for (Index j = 0; j < values.cols(); ++j) {
     const SurfacePoint& point = setup.points[static_cast<std::size_t>(j)];
     const std::vector<Support> radii = radii_of(point);
-    const VectorXd distances = graph.distances(point.place, largest_of(radii));
+    const VectorXd distances = graph.distances(point.position, largest_of(radii));
     for (Index v = 0; v < values.rows(); ++v) {
       values(v, j) = 0.0;
       for (const Support& support : radii)
@@ -105,7 +105,7 @@ VectorXd affine_coordinates(const Mesh& mesh, const SurfaceSetup& setup,
   Points about(3, count);
   for (Index k = 0; k < count; ++k)
     about.col(k) =
-        setup.points[static_cast<std::size_t>(points[static_cast<std::size_t>(k)])].place.in(
+        setup.points[static_cast<std::size_t>(points[static_cast<std::size_t>(k)])].position.in(
             mesh.vertices);
   const Eigen::Vector3d middle = about.rowwise().mean();
   about.colwise() -= middle;
@@ -135,7 +135,7 @@ VectorXd weights_by_nearness(const Mesh& mesh, const SurfaceSetup& setup,
     const SurfacePoint& point = setup.points[static_cast<std::size_t>(points[k])];
     const double radius = largest_of(radii_of(point));
     const double squared =
-        (point.place.in(mesh.vertices) - mesh.vertices.col(vertex)).squaredNorm();
+        (point.position.in(mesh.vertices) - mesh.vertices.col(vertex)).squaredNorm();
     weights[static_cast<Index>(k)] = 1.0 / (squared + least * radius * radius);
   }
   return weights / weights.sum();
@@ -156,7 +156,7 @@ public:
   MatrixXd at_points() const {
     MatrixXd rows(functions_.cols(), functions_.cols());
     for (Index i = 0; i < rows.rows(); ++i)
-      rows.row(i) = at_place(functions_, setup_.points[static_cast<std::size_t>(i)].place);
+      rows.row(i) = at_place(functions_, setup_.points[static_cast<std::size_t>(i)].position);
     return rows;
   }
 

@@ -139,10 +139,8 @@ BlockShape BlockLayout::pack(const Points& places) const {
   std::vector<VertexBlock> blocks(block_count());
   for (std::size_t at = 0; at < blocks.size() * block_size; ++at) {
     const auto column = places.col(order_[std::min(at, order_.size() - 1)]);
-    VertexBlock& block = blocks[at / block_size];
-    block.x[at % block_size] = packed(column[0], 0);
-    block.y[at % block_size] = packed(column[1], 1);
-    block.z[at % block_size] = packed(column[2], 2);
+    set_vertex(blocks[at / block_size], at % block_size,
+               {packed(column[0], 0), packed(column[1], 1), packed(column[2], 2)});
   }
   return BlockShape(std::move(blocks));
 }
@@ -176,6 +174,16 @@ double BlockLayout::rounded_radius(double radius) const noexcept {
   const double inverse = unit_ / radius;
   const bool fits = inverse <= max_units && inverse >= 1.0 / max_units; // false for NaN
   return fits ? unit_ / static_cast<double>(static_cast<float>(inverse)) : radius;
+}
+
+BlockShape shape_in_blocks(const Eigen::Matrix3Xf& shape, const BlockLayout& layout) {
+  const std::vector<std::uint32_t>& order = layout.order();
+  std::vector<VertexBlock> blocks(layout.block_count());
+  for (std::size_t at = 0; at < blocks.size() * block_size; ++at) {
+    const auto place = shape.col(static_cast<Eigen::Index>(order[std::min(at, order.size() - 1)]));
+    set_vertex(blocks[at / block_size], at % block_size, place);
+  }
+  return BlockShape(std::move(blocks));
 }
 
 } // namespace nendo::deform

@@ -76,7 +76,7 @@ struct Elements {
   const char* first;
   std::size_t stride; ///< of a row
 
-  double number(std::size_t row, std::size_t column, bool normalized = false) const {
+  double number(std::size_t row, std::size_t column, bool normalized) const {
     return decoded(type, first + row * stride + column * size_of(type), normalized);
   }
 };
@@ -347,14 +347,15 @@ void GltfDocument::fill_sparse(const Json& accessor, GltfNumbers& numbers) const
   };
   const Elements places = part(*indices, gltf_count(*indices, "componentType", 0), 1);
   const Elements elements = part(*values, gltf_count(accessor, "componentType", 0), numbers.width);
+  const bool normalized = gltf_flag(accessor, "normalized");
   for (std::size_t k = 0; k < count; ++k) {
-    const double place = places.number(k, 0);
+    const double place = places.number(k, 0, false);
     if (!(place >= 0.0 && place < static_cast<double>(numbers.count)) ||
         places.type == NumberType::float32)
       refuse("a sparse accessor names an element that is not there");
     const std::size_t row = static_cast<std::size_t>(place) * numbers.width;
     for (std::size_t column = 0; column < numbers.width; ++column)
-      numbers.values[row + column] = elements.number(k, column);
+      numbers.values[row + column] = elements.number(k, column, normalized);
   }
 }
 

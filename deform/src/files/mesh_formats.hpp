@@ -81,6 +81,7 @@ inline void set_texcoords(std::vector<double>& numbers, Mesh& mesh) {
   mesh.texcoords = columns_of<2>(numbers);
 }
 
+/// Returns an Error of kind bad_input whose message is "name: what".
 inline Error bad_file(std::string_view name, const std::string& what) {
   return {Errc::bad_input, std::string(name) + ": " + what};
 }

@@ -21,7 +21,7 @@ std::string folded(std::string_view name) {
   std::string text;
   for (const char c : name) {
     if (c == ' ' && text.ends_with(' ')) continue;
-    text += small_letter(c);
+    text += to_lower(c);
   }
   return text;
 }

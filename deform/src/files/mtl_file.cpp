@@ -165,7 +165,7 @@ void MtlReader::begin_material(std::string name) {
 }
 
 void MtlReader::statement(TextScanner& line) {
-  const std::string keyword = in_small_letters(std::string(line.field()));
+  const std::string keyword = to_lower(std::string(line.field()));
   if (keyword == "newmtl") return begin_material(joined_fields(line));
   if (material_ == stated_.size()) return;
   Stated& stated = stated_[material_];

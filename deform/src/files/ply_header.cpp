@@ -1,6 +1,5 @@
 #include "files/ply_header.hpp"
 
-#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -64,9 +63,9 @@ private:
       return bad("PLY version " + in_quotes(version) + " is not known, only 1.0");
     constexpr std::array<std::string_view, 3> known{"ascii", "binary_little_endian",
                                                     "binary_big_endian"};
-    const auto* const found = std::find(known.begin(), known.end(), format);
-    if (found == known.end()) return bad("PLY format " + in_quotes(format) + " is not known");
-    header_.format = static_cast<PlyFormat>(found - known.begin());
+    const auto found = enumerator_named<PlyFormat>(known, format);
+    if (!found) return bad("PLY format " + in_quotes(format) + " is not known");
+    header_.format = *found;
     has_format_ = true;
     return {};
   }

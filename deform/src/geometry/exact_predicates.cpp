@@ -138,7 +138,8 @@ int exact_orient_2d(const PlanePoint& a, const PlanePoint& b, const PlanePoint& 
       .sign();
 }
 
-/// Of three points, seen from another one, whose rows are x, y and third(point, both).
+/// Returns the sign of the determinant whose rows are x, y and third(point, {x, y}) of three
+/// points, relative to `from`.
 template <class Point, class Third>
 int exact_sign(const std::array<const Point*, 3>& points, const Point& from,
                const Third& third) noexcept {

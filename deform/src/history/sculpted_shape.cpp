@@ -125,6 +125,7 @@ void ShapeHistory::save(std::size_t block) noexcept {
 }
 
 SavedBlock* ShapeHistory::next_head(HistoryMove move) const noexcept {
+  assert(move != HistoryMove::reset);
   if (move == HistoryMove::undo) return steps() > 0 ? head_ : nullptr;
   if (undone_ == 0) return nullptr;
   return head_ != nullptr ? head_->of_step.after : first_head_;
@@ -239,6 +240,7 @@ void SculptedShape::mark(const StepNote& note) noexcept {
 }
 
 void SculptedShape::pass_mark(HistoryMove move) noexcept {
+  assert(move != HistoryMove::reset);
   parts_->revert();
   if (move == HistoryMove::undo)
     parts_->history.undo(parts_->now);

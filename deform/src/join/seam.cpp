@@ -32,18 +32,19 @@ public:
       number_(point);
     for (const std::uint32_t point : free)
       surface.visit_edges(point, [&](std::uint32_t edge) { number_(surface.to(edge)); });
-    const std::size_t row_count = points_.size();
+    const std::size_t row_count = number_.entries().size();
     for (std::size_t row = 0; row < row_count; ++row)
       add_row(surface, row);
-    rows_.resize(static_cast<Eigen::Index>(row_count), static_cast<Eigen::Index>(points_.size()));
+    rows_.resize(static_cast<Eigen::Index>(row_count),
+                 static_cast<Eigen::Index>(number_.entries().size()));
     rows_.setFromTriplets(entries_.begin(), entries_.end());
   }
 
   const Sparse& rows() const { return rows_; }
   Places places(const LiveSurface& surface) const {
-    Places places(static_cast<Eigen::Index>(points_.size()), 3);
-    for (std::size_t at = 0; at < points_.size(); ++at) {
-      const SpacePoint& place = surface.point(points_[at]);
+    Places places(static_cast<Eigen::Index>(number_.entries().size()), 3);
+    for (std::size_t at = 0; at < number_.entries().size(); ++at) {
+      const SpacePoint& place = surface.point(number_.entries()[at]);
       places.row(static_cast<Eigen::Index>(at)) << place[0], place[1], place[2];
     }
     return places;
@@ -56,16 +57,16 @@ private:
       return 1.0 / std::max(surface.edge_length(edge), shortest_edge);
     };
     double sum = 0.0;
-    surface.visit_edges(points_[row], [&](std::uint32_t edge) { sum += weight_of(edge); });
+    surface.visit_edges(number_.entries()[row],
+                        [&](std::uint32_t edge) { sum += weight_of(edge); });
     entries_.emplace_back(static_cast<int>(row), static_cast<int>(row), 1.0);
-    surface.visit_edges(points_[row], [&](std::uint32_t edge) {
+    surface.visit_edges(number_.entries()[row], [&](std::uint32_t edge) {
       entries_.emplace_back(static_cast<int>(row), static_cast<int>(number_(surface.to(edge))),
                             -weight_of(edge) / sum);
     });
   }
 
-  FirstUses number_; ///< of the free points, of rows that stay, and of their neighbours
-  const std::vector<std::uint32_t>& points_ = number_.entries();
+  FirstUses number_; ///< the free points, rows that stay, and their neighbours
   std::vector<Eigen::Triplet<double>> entries_;
   Sparse rows_;
 };

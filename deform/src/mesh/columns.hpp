@@ -1,6 +1,6 @@
 #pragma once
 // The columns of a mesh, as algorithms read and copy them: points as plain numbers, and what each
-// corner and each face has.
+// corner and each face has. Also the edges of faces, and faces with equal corners.
 
 #include <algorithm>
 #include <array>

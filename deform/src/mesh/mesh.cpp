@@ -1,6 +1,7 @@
 #include <nendo/deform/mesh.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -36,8 +37,10 @@ void keep_vertices(Mesh& mesh, std::span<const std::uint8_t> keeps) {
   for (std::uint32_t at = 0; at < keeps.size(); ++at)
     if (keeps[at] != 0) kept(at);
   if (kept.entries().size() == keeps.size()) return;
-  for (std::uint32_t& corner : mesh.face_corners)
+  for (std::uint32_t& corner : mesh.face_corners) {
+    assert(kept.has(corner));
     corner = kept(corner);
+  }
   mesh.vertices = columns_at(mesh.vertices, kept.entries());
   keep_values(mesh.detail, keeps);
   mesh.look.vertex_colours = columns_at(mesh.look.vertex_colours, kept.entries());

@@ -110,8 +110,8 @@ Vector3d SurfacePosition::in(const Points& vertices) const {
   return place;
 }
 
-SurfacePosition nearest_place(const Mesh& mesh, const Vector3d& to,
-                              std::span<const std::uint32_t> parts, std::uint32_t part) {
+SurfacePosition nearest_position(const Mesh& mesh, const Vector3d& to,
+                                 std::span<const std::uint32_t> parts, std::uint32_t part) {
   NearPlace best;
   for_each_cut(mesh, [&](const std::array<std::uint32_t, 3>& corners) {
     if (!parts.empty() && parts[corners[0]] != part) return;

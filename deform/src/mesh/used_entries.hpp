@@ -8,13 +8,13 @@
 
 namespace nendo::deform {
 
-/// Keeps the values whose mark is not `dropped`. A column without values stays empty.
-template <class Values, class Marks>
-void keep_values(Values& values, const Marks& marks, typename Marks::value_type dropped = 0) {
+/// Keeps the values whose entry in `keeps` is not `dropped`. A column without values stays empty.
+template <class Values, class Keeps>
+void keep_values(Values& values, const Keeps& keeps, typename Keeps::value_type dropped = 0) {
   if (values.empty()) return;
   std::size_t kept = 0;
-  for (std::size_t at = 0; at < marks.size(); ++at)
-    if (marks[at] != dropped) values[kept++] = values[at];
+  for (std::size_t at = 0; at < keeps.size(); ++at)
+    if (keeps[at] != dropped) values[kept++] = values[at];
   values.resize(kept);
 }
 
@@ -30,6 +30,7 @@ public:
     }
     return numbers_[entry];
   }
+  bool has(std::uint32_t entry) const noexcept { return numbers_[entry] != no_index; }
   /// Returns the entries that were used, by their numbers.
   const std::vector<std::uint32_t>& entries() const noexcept { return entries_; }
   void clear() noexcept {

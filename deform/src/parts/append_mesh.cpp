@@ -8,7 +8,7 @@
 namespace nendo::deform {
 namespace {
 
-void append_numbers(std::span<const std::uint32_t> more, std::uint32_t first,
+void append_indices(std::span<const std::uint32_t> more, std::uint32_t first,
                     std::vector<std::uint32_t>& to) {
   for (const std::uint32_t number : more)
     to.push_back(number == no_index ? no_index : number + first);
@@ -24,11 +24,11 @@ void append_mesh(const Mesh& more, Mesh& mesh) {
   append_columns(more.texcoords, mesh.texcoords);
   append_columns(more.look.texcoord_colours, mesh.look.texcoord_colours);
   append_columns(more.look.vertex_colours, mesh.look.vertex_colours);
-  append_numbers(more.face_corners, vertices, mesh.face_corners);
-  append_numbers(more.corner_texcoords, texcoords, mesh.corner_texcoords);
-  append_numbers(std::span(more.face_starts).subspan(1), corners, mesh.face_starts);
+  append_indices(more.face_corners, vertices, mesh.face_corners);
+  append_indices(more.corner_texcoords, texcoords, mesh.corner_texcoords);
+  append_indices(std::span(more.face_starts).subspan(1), corners, mesh.face_starts);
   for (std::size_t k = 0; k < 3; ++k)
-    append_numbers(*face_columns(more.look)[k], 0, *face_columns(mesh.look)[k]);
+    append_indices(*face_columns(more.look)[k], 0, *face_columns(mesh.look)[k]);
   mesh.detail.clear(); // what is new has none
 }
 

@@ -7,6 +7,8 @@
 #include <memory>
 #include <numeric>
 
+#include <nendo/base/text.hpp>
+
 #include "geometry/octree_order.hpp"
 #include "geometry/usable.hpp"
 #include "solver/polynomial_part.hpp"
@@ -43,9 +45,7 @@ std::string_view name_of(Polynomial polynomial) noexcept {
 }
 
 std::optional<Polynomial> polynomial_named(std::string_view name) noexcept {
-  const auto found = std::find(polynomial_names.begin(), polynomial_names.end(), name);
-  if (found == polynomial_names.end()) return std::nullopt;
-  return static_cast<Polynomial>(found - polynomial_names.begin());
+  return enumerator_named<Polynomial>(polynomial_names, name);
 }
 
 std::string_view describe(FieldStatus status) noexcept {

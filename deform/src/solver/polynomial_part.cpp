@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <nendo/deform/dense.hpp>
-
 #include "geometry/usable.hpp"
+#include "solver/decompositions.hpp"
 
 namespace nendo::deform {
 

@@ -5,7 +5,6 @@
 
 #include <nendo/deform/closed_manifold.hpp>
 
-#include "field/block_evaluator.hpp"
 #include "join/live_surface.hpp"
 #include "join/mesh_surface.hpp"
 #include "join/refine.hpp"
@@ -270,16 +269,6 @@ Result<Mesh> refined(const Mesh& mesh, std::span<const EdgeOperation> operations
     if (!live.repeat(operation))
       return Error{Errc::bad_input, "cannot be refined as it was when it was recorded"};
   return mesh_at_rest(live.take(), look, mesh.offset);
-}
-
-BlockShape shape_in_blocks(const Eigen::Matrix3Xf& shape, const BlockLayout& layout) {
-  const std::vector<std::uint32_t>& order = layout.order();
-  std::vector<VertexBlock> blocks(layout.block_count());
-  for (std::size_t at = 0; at < blocks.size() * block_size; ++at) {
-    const auto place = shape.col(static_cast<Eigen::Index>(order[std::min(at, order.size() - 1)]));
-    set_vertex(blocks[at / block_size], at % block_size, place);
-  }
-  return BlockShape(std::move(blocks));
 }
 
 } // namespace nendo::deform

@@ -55,7 +55,7 @@ std::optional<char> stated_separator(std::string_view line) noexcept {
   line = trimmed(line);
   if (line.size() > 1 && line.front() == '"' && line.back() == '"')
     line = line.substr(1, line.size() - 2);
-  if (line.size() != 5 || line.substr(1, 3) != "ep=" || small_letter(line[0]) != 's')
+  if (line.size() != 5 || line.substr(1, 3) != "ep=" || to_lower(line[0]) != 's')
     return std::nullopt;
   const char c = line[4];
   return c == ',' || c == ';' ? std::optional(c) : std::nullopt;
@@ -65,7 +65,7 @@ bool is_word_for_nothing(std::string_view cell) noexcept {
   constexpr std::array<std::string_view, 6> words{"", "nan", "na", "n/a", "null", "none"};
   return std::any_of(words.begin(), words.end(), [&](std::string_view word) {
     return std::equal(word.begin(), word.end(), cell.begin(), cell.end(),
-                      [](char a, char b) { return a == small_letter(b); });
+                      [](char a, char b) { return a == to_lower(b); });
   });
 }
 
@@ -107,7 +107,7 @@ std::string TableReader::plain(std::string_view name) {
       continue;
     }
     if (std::exchange(is_between, false)) result += '_';
-    result += small_letter(c);
+    result += to_lower(c);
   }
   return result;
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <system_error>
 
+#include <nendo/base/number_in.hpp>
+
 namespace nendo {
 namespace {
 
@@ -15,11 +17,7 @@ template <class Number>
 std::optional<Number> parse_whole(std::string_view field) noexcept {
   // from_chars knows no plus sign; "+-1" must not slip through.
   if (field.size() > 1 && field[0] == '+' && field[1] != '-') field.remove_prefix(1);
-  Number number{};
-  const char* const end = field.data() + field.size();
-  const auto [stop, error] = std::from_chars(field.data(), end, number);
-  if (error != std::errc{} || stop != end) return std::nullopt;
-  return number;
+  return number_in<Number>(field);
 }
 
 /// What the first byte of a character says of it.
@@ -68,6 +66,12 @@ std::string_view cut(std::string_view& rest, char separator) noexcept {
   const std::string_view part = rest.substr(0, at);
   rest.remove_prefix(std::min(at + 1, rest.size()));
   return part;
+}
+
+std::string_view ItemReader::next() noexcept {
+  if (has_ended_) return {};
+  has_ended_ = rest_.find(separator_) == std::string_view::npos;
+  return cut(rest_, separator_);
 }
 
 std::vector<std::string_view> fields_of(std::string_view line, std::size_t most) {

@@ -286,6 +286,7 @@ Reply<std::string> Commands::firmware_text() {
 template <class T>
 Reply<T> Commands::ask(Query<T> query) noexcept {
   std::array<std::byte, sizeof(Vibration)> data{}; // the longest
+  assert(query.data_bytes <= data.size());
   Reply<T> reply;
   reply.answer = dialogue_.ask(query.letter, std::span(data).first(query.data_bytes), timeout_);
   Decoder{ByteReader(data)}(reply.value);

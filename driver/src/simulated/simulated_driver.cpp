@@ -113,8 +113,9 @@ bool set_option(SimulatedGloveOptions& settings, const std::string& key, const s
            settings.rate_hz <= 1000.0;
   }
   if (key == "hand") {
-    settings.side = value == "left" ? Side::left : Side::right;
-    return value == name_of(settings.side);
+    const auto side = side_named(value);
+    settings.side = side.value_or(settings.side);
+    return side.has_value();
   }
   settings.sensors = value == "18" ? 18 : 22;
   return value == std::to_string(settings.sensors);

@@ -103,7 +103,7 @@ Result<std::optional<Side>> hand_option(const GloveSpec& spec) {
   if (spec.options.find("hand") == spec.options.end()) return std::optional<Side>{};
   const auto hand = word_option(spec, "hand", {"left", "right"});
   if (!hand) return hand.error();
-  return std::optional(*hand == "left" ? Side::left : Side::right);
+  return side_named(*hand);
 }
 
 ChosenHand choose_hand(std::optional<Side> glove, const SideOptions& wishes) noexcept {

@@ -77,8 +77,8 @@ private:
   void shorten_latency(const std::string& port) {
     const auto latency = shorten_ftdi_latency(port);
     if (!latency || *latency <= 1ms || std::exchange(warned_, true)) return;
-    spdlog::warn("host: {} holds replies back for {} ms (FTDI latency timer); shorten it: {}", port,
-                 latency->count(), latency_timer_remedy(port));
+    spdlog::warn("host: {} delays replies by {} ms (FTDI latency timer); shorten the delay: {}",
+                 port, latency->count(), latency_timer_remedy(port));
   }
 
   const std::string path_;

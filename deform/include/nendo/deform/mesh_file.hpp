@@ -19,7 +19,7 @@ namespace nendo::deform {
 /// The up axis of a file. Nendo's up axis is y.
 enum class UpAxis { y, z };
 
-/// Rotates z-up points to y-up, in place; exact, as its inverse.
+/// Rotates z-up points to y-up, in place. This function and its inverse are exact.
 inline void lay_from_z_up(Points& points) {
   points.row(1).swap(points.row(2));
   points.row(2).array() = 0.0 - points.row(2).array(); // no -0
@@ -41,6 +41,8 @@ struct ReadOptions {
   std::optional<UpAxis> up{};
   /// Whether vertices at the same position are merged if the format cannot express shared vertices.
   bool weld = true;
+
+  UpAxis up_axis() const noexcept { return up.value_or(UpAxis::y); }
 };
 
 /// A model, and notes about data that its reader ignored, changed or guessed. A note is one

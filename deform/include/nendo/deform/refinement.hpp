@@ -75,7 +75,4 @@ private:
 /// Allocates.
 NENDO_API Result<Mesh> refined(const Mesh& mesh, std::span<const EdgeOperation> operations);
 
-/// Returns a refinement's shape in blocks of its mesh's layout. Allocates.
-NENDO_API BlockShape shape_in_blocks(const Eigen::Matrix3Xf& shape, const BlockLayout& layout);
-
 } // namespace nendo::deform

@@ -70,7 +70,8 @@ public:
   void set_notes(const StepNote& note, const StepNote& of_reset) noexcept;
   /// Adds a step that does not change the shape, for another undoable change in the same history.
   void mark(const StepNote& note) noexcept;
-  // The next functions look at the steps that can be undone, or at those that can be redone.
+  // In the next four functions, `move` is undo or redo, and the next step is the next one to undo,
+  // or to redo.
 
   /// Undoes, or redoes, the next step, which mark() must have added. Changes since the previous
   /// step are discarded; call the deformer's release() first. Wait-free.

@@ -21,7 +21,7 @@
 namespace nendo::deform {
 
 struct SurfacePoint {
-  SurfacePosition place;
+  SurfacePosition position;
   double radius = 1.0; ///< along the surface, model units, > 0
   std::string name{};  ///< its name in errors; empty: its number
   /// Replaces `radius` unless empty. The point's function is then the weighted mean of the

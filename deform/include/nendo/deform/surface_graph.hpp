@@ -29,9 +29,9 @@ struct NENDO_API SurfacePosition {
 
 /// Returns the position on the mesh's faces that is nearest to `to`, in model units. The mesh must
 /// have a face. With `parts` (SurfaceGraph::parts()), searches only `part`, which must have a face.
-NENDO_API SurfacePosition nearest_place(const Mesh& mesh, const Eigen::Vector3d& to,
-                                        std::span<const std::uint32_t> parts = {},
-                                        std::uint32_t part = 0);
+NENDO_API SurfacePosition nearest_position(const Mesh& mesh, const Eigen::Vector3d& to,
+                                           std::span<const std::uint32_t> parts = {},
+                                           std::uint32_t part = 0);
 
 /// The graph of paths along a surface: its edges, the diagonals of its faces, and the straight
 /// lines across an edge between two triangles. Shortest paths (Dijkstra 1959) are a few per cent

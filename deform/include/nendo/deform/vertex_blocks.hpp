@@ -64,6 +64,11 @@ private:
 inline Eigen::Vector3f vertex_in(const VertexBlock& block, std::size_t lane) noexcept {
   return {block.x[lane], block.y[lane], block.z[lane]};
 }
+inline void set_vertex(VertexBlock& block, std::size_t lane, const Eigen::Vector3f& to) noexcept {
+  block.x[lane] = to.x();
+  block.y[lane] = to.y();
+  block.z[lane] = to.z();
+}
 /// Returns the vertex at this index in block order.
 inline Eigen::Vector3f vertex_at(const BlockShape& shape, std::size_t place) noexcept {
   return vertex_in(shape[place / block_size], place % block_size);
@@ -119,5 +124,8 @@ private:
 
 /// Max absolute value of a block coordinate. Sums of such numbers do not overflow; squares may.
 inline constexpr double max_units = 1e35;
+
+/// Returns a refinement's shape in blocks of its mesh's layout. Allocates.
+NENDO_API BlockShape shape_in_blocks(const Eigen::Matrix3Xf& shape, const BlockLayout& layout);
 
 } // namespace nendo::deform

@@ -152,8 +152,7 @@ std::optional<Incident> incident_of(const Fault& fault, bool over) {
   if (!over || fault.kind == FaultKind::eg) return incident;
   if (fault.value == "18") incident.sensors = 18;
   if (fault.value == "22") incident.sensors = 22;
-  if (fault.value == "left") incident.side = Side::left;
-  if (fault.value == "right") incident.side = Side::right;
+  if (const auto side = side_named(fault.value)) incident.side = *side;
   return incident;
 }
 

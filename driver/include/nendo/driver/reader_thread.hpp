@@ -1,6 +1,6 @@
 #pragma once
-// For drivers, in this library and in programs, that generate their own samples: a reader thread
-// that sleeps until deadlines and that stop() wakes at once.
+// For drivers, in this library and in programs: a reader thread that can sleep until deadlines, and
+// that stop() wakes at once.
 
 #include <condition_variable>
 #include <functional>

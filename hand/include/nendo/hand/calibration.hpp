@@ -66,9 +66,9 @@ struct NENDO_API Calibration {
 
 /// Returns a calibration for an average hand, the same for both sides; a wearer's own calibration
 /// is better. A self-calibrated scale is mapped to each joint's range of motion: from straight
-/// (closed) at 0 to fully bent (spread) at `most`, and for the wrist, which turns both ways, from
-/// one end to the other. For other scales, a CyberGlove's typical 8-bit values are scaled to
-/// `most`. With `most` = 0 every gain is 0.
+/// (closed) at 0 to fully bent (spread) at `max_count`, and for the wrist, which turns both ways,
+/// from one end to the other. For other scales, a CyberGlove's typical 8-bit values are scaled to
+/// `max_count`. With `max_count` = 0 every gain is 0.
 NENDO_API Calibration default_calibration(CountScale scale = {}) noexcept;
 
 } // namespace nendo::hand

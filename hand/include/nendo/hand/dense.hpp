@@ -13,6 +13,8 @@ namespace nendo::hand {
 NENDO_API void solve_positive_definite(Eigen::Ref<Eigen::MatrixXd> matrix,
                                        Eigen::Ref<Eigen::VectorXd> right);
 
+/// Returns the inverse of a symmetric positive definite matrix, of which the lower half is used.
+/// Allocates.
 NENDO_API Eigen::MatrixXd inverse_of_positive_definite(const Eigen::MatrixXd& matrix);
 
 /// Returns the eigenvalues of a symmetric matrix, which is not empty, in ascending order.

@@ -46,7 +46,7 @@ constexpr std::size_t index_of(Joint joint) noexcept {
   return static_cast<std::size_t>(joint);
 }
 
-/// Returns the joint that is so many `steps` later in the order: along a finger, nearer to its tip.
+/// Returns the joint that is `steps` places later in the order; along a finger, nearer to its tip.
 constexpr Joint joint_after(Joint joint, std::size_t steps) noexcept {
   return static_cast<Joint>(index_of(joint) + steps);
 }

@@ -9,8 +9,8 @@
 #include <nendo/base/side.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/calibration.hpp>
-#include <nendo/hand/range_adaptation.hpp>
 #include <nendo/hand/skeleton.hpp>
+#include <nendo/hand/slip_adaptation.hpp>
 #include <nendo/hand/stuck_watch.hpp>
 
 namespace nendo::hand {

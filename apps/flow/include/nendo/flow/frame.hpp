@@ -109,8 +109,9 @@ struct Frame {
   /// The values of the puppet's functions, in their order, and their number; 0 without a puppet.
   std::array<float, puppet::Puppet::max_functions> functions{};
   std::uint32_t function_count = 0;
-  std::array<bool, 2> let_go{}; ///< index: Side; the hand has released all functions that it plays
-  bool symmetric = false;       ///< one hand plays both sides
+  std::array<bool, 2>
+      released{};         ///< index: Side; the hand has released all functions that it plays
+  bool symmetric = false; ///< one hand plays both sides
   /// The inputs that are layers, and on or fading in; bit k is input k.
   std::uint32_t layers_on = 0;
   /// The deformed vertices. ChangeBroker::layout(model) converts them to points. The stamps show

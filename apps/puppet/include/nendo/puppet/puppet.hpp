@@ -211,8 +211,8 @@ NENDO_API void count_from(const Eigen::Vector3d& offset, Puppet& puppet);
 /// vertex).
 NENDO_API Result<void> check_fits(const Puppet& puppet, const deform::Mesh& model);
 /// Returns the positions of the points on the model, in order. The puppet must fit (check_fits()).
-NENDO_API std::vector<deform::SurfacePosition> places_on(const Puppet& puppet,
-                                                         const deform::Mesh& model);
+NENDO_API std::vector<deform::SurfacePosition> positions_on(const Puppet& puppet,
+                                                            const deform::Mesh& model);
 /// Returns the weight of each vertex by the masks, from 0 (protected) to 1 (free). Empty: there is
 /// no mask.
 NENDO_API Eigen::VectorXd mask_weights(const Puppet& puppet, const deform::Points& vertices);

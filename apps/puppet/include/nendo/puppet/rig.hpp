@@ -114,7 +114,7 @@ public:
   void continue_from(const RigPlayer& before, std::span<const std::size_t> from,
                      const Hands& hands) noexcept;
   /// Returns whether all functions of a hand are released.
-  bool has_let_go(Side side) const noexcept;
+  bool has_released(Side side) const noexcept;
   /// Returns the requested value of a function, before clamping.
   double asked(std::size_t function) const noexcept { return state_.functions[function].asked; }
 

@@ -10,7 +10,7 @@
 #include <nendo/driver/glove.hpp>
 #include <nendo/hand/calibration_file.hpp>
 #include <nendo/hand/calibration_store.hpp>
-#include <nendo/hand/range_adaptation.hpp>
+#include <nendo/hand/slip_adaptation.hpp>
 
 namespace nendo::sculpting {
 

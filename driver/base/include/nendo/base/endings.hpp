@@ -8,18 +8,20 @@
 
 namespace nendo {
 
-constexpr char small_letter(char c) noexcept {
+/// Returns the lower case of a letter of ASCII, and other characters as they are.
+constexpr char to_lower(char c) noexcept {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-inline std::string in_small_letters(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), small_letter);
+inline std::string to_lower(std::string text) {
+  for (char& c : text)
+    c = to_lower(c);
   return text;
 }
 
 /// Returns whether `path` ends in `ending` (lower case, e.g. ".obj"), ignoring ASCII case.
 constexpr bool ends_in(std::string_view path, std::string_view ending) noexcept {
-  const auto same = [](char in_path, char in_ending) { return small_letter(in_path) == in_ending; };
+  const auto same = [](char in_path, char in_ending) { return to_lower(in_path) == in_ending; };
   return path.size() >= ending.size() &&
          std::equal(path.end() - static_cast<std::ptrdiff_t>(ending.size()), path.end(),
                     ending.begin(), same);

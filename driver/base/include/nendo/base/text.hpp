@@ -39,6 +39,21 @@ NENDO_API std::string_view trimmed(std::string_view text) noexcept;
 /// separator, returns all of `rest`, which becomes empty.
 NENDO_API std::string_view cut(std::string_view& rest, char separator) noexcept;
 
+/// Iterates over the items of a text that single separators divide. "a,,b" has an empty item, and
+/// an empty text is one.
+class NENDO_API ItemReader {
+public:
+  ItemReader(std::string_view text, char separator) noexcept : rest_(text), separator_(separator) {}
+  /// Returns the next item; empty at the end.
+  std::string_view next() noexcept;
+  bool has_ended() const noexcept { return has_ended_; }
+
+private:
+  std::string_view rest_;
+  char separator_;
+  bool has_ended_ = false;
+};
+
 /// Returns the first `most` fields of a line, separated by blanks.
 NENDO_API std::vector<std::string_view> fields_of(std::string_view line, std::size_t most = 16);
 
@@ -50,6 +65,15 @@ NENDO_API std::optional<double> to_finite_number(std::string_view field) noexcep
 /// finite or has no unit, because a bare number would be ambiguous.
 NENDO_API std::optional<double> to_metres(std::string_view field) noexcept;
 NENDO_API std::optional<std::int64_t> to_integer(std::string_view field) noexcept;
+
+/// Returns the enumerator of this name. `names` are in the order of the enumerators, the first of
+/// which is 0.
+template <class Enum, class Names>
+constexpr std::optional<Enum> enumerator_named(const Names& names, std::string_view name) noexcept {
+  for (std::size_t at = 0; at < names.size(); ++at)
+    if (names[at] == name) return static_cast<Enum>(at);
+  return std::nullopt;
+}
 
 /// Returns the shortest decimal string that parses to the same double. It has a point or an
 /// exponent, as TOML requires of a float. `value` must be finite.

@@ -1,4 +1,4 @@
-#include <nendo/deform/dense.hpp>
+#include "solver/decompositions.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -15,7 +15,7 @@
 #include "support/restraint.hpp"
 #include "support/self_intersections.hpp"
 
-namespace clay_go_on_test {
+namespace clay_continue_test {
 
 using namespace nendo::deform;
 using Eigen::Vector3d;
@@ -78,7 +78,7 @@ double pull(Clay& clay) {
 
 } // namespace
 
-TEST_SUITE("clay_go_on") {
+TEST_SUITE("clay_continue") {
   TEST_CASE("fingers hold on to clay whose triangles are exchanged") {
     const auto before = held_ball();
     const auto after = before->refined();
@@ -151,4 +151,4 @@ TEST_SUITE("clay_go_on") {
   }
 }
 
-} // namespace clay_go_on_test
+} // namespace clay_continue_test
