@@ -32,15 +32,15 @@ constexpr double max_scaling = 2.0;
 Eigen::Vector3d middle_of_box(const BoundedShape& shape, bool of_floor) noexcept {
   Eigen::Vector3d middle;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    float high = shape.bounds[0].sides[axis], negated_low = shape.bounds[0].sides[axis + 4];
+    float low = shape.bounds[0].sides[axis], negated_high = shape.bounds[0].sides[axis + 4];
     for (const BlockBounds& box : shape.bounds) {
-      high = std::max(high, box.sides[axis]);
-      negated_low = std::max(negated_low, box.sides[axis + 4]);
+      low = std::min(low, box.sides[axis]);
+      negated_high = std::min(negated_high, box.sides[axis + 4]);
     }
     const bool is_floor = of_floor && axis == 1;
     middle[static_cast<Eigen::Index>(axis)] =
-        is_floor ? -static_cast<double>(negated_low)
-                 : 0.5 * (static_cast<double>(high) - static_cast<double>(negated_low));
+        is_floor ? static_cast<double>(low)
+                 : 0.5 * (static_cast<double>(low) - static_cast<double>(negated_high));
   }
   return middle;
 }
