@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
   }
   glove.stop(); // before the ring goes
 
-  const driver::GloveStats stats = glove.stats();
+  const driver::StreamStats stats = glove.stats();
   std::cout << glove.info().model << ", " << name_of(glove.info().side) << " hand\n";
   print(latest);
   std::cout << stats.records << " samples, " << stats.bad_records << " bad ones\n";

@@ -73,7 +73,7 @@ std::string glove_line(const MonitorPicture& picture, int width) {
 }
 
 // Losses on the line and losses in the program have names of their own, as everywhere.
-std::string losses(const driver::GloveInfo& info, const driver::GloveStats& stats) {
+std::string losses(const driver::GloveInfo& info, const driver::StreamStats& stats) {
   const driver::RecordCounts counts = driver::counts_of(stats);
   std::string text;
   const auto add = [&](std::uint64_t count, std::string_view what) {

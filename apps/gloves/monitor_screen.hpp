@@ -34,7 +34,7 @@ private:
 /// The contents of a picture. Everything that is pointed to must outlive the picture.
 struct MonitorPicture {
   const driver::GloveInfo* info = nullptr;
-  driver::GloveStats stats;
+  driver::StreamStats stats;
   const GloveSample* sample = nullptr;            ///< the latest; null: none came yet
   const SeenCounts* seen = nullptr;               ///< includes `sample`
   const hand::Calibration* calibration = nullptr; ///< null: counts only

@@ -13,8 +13,8 @@ namespace nendo::gloves {
 namespace {
 
 void note_columns_not_read(const driver::GloveInfo& info) {
-  for (const driver::GloveFact& fact : info.facts)
-    if (info.kind == driver::GloveKind::recorded && fact.name == "columns_not_read")
+  for (const driver::DeviceFact& fact : info.facts)
+    if (info.kind == driver::SourceKind::recorded && fact.name == "columns_not_read")
       cli::note(printable(info.source) + ": not read: " + fact.value);
 }
 
@@ -45,7 +45,7 @@ Error same_hand(const OpenHand& one, const OpenHand& other) {
   const driver::GloveInfo& info = other.glove->info();
   const std::string both = one.glove->info().source + " and " + info.source + " are both " +
                            std::string(name_of(other.side)) + "-hand gloves; ";
-  if (info.kind == driver::GloveKind::recorded)
+  if (info.kind == driver::SourceKind::recorded)
     return {Errc::usage, both + "a recording has one of each: leave one of them out"};
   const std::string wish = other.side == Side::left ? "hand=right" : "hand=left";
   std::string name = info.source;

@@ -26,7 +26,7 @@ std::vector<std::string> StuckNotices::changes(SensorMask left_out, const GloveS
 
 std::vector<SensorAtEnd> sensors_at_end(driver::Glove& glove) {
   const driver::GloveInfo& info = glove.info();
-  if (info.kind != driver::GloveKind::device || info.counts.self_calibrated) return {};
+  if (info.kind != driver::SourceKind::device || info.counts.self_calibrated) return {};
   constexpr auto patience = std::chrono::milliseconds(2000);
   constexpr auto looks = std::chrono::milliseconds(500);
   SampleRing ring(1024);

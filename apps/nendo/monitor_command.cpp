@@ -71,7 +71,7 @@ struct Monitored {
     using Kind = sculpting::FoundCalibration::Kind;
     if (known->kind == Kind::recorded) return "the wearer who was recorded";
     if (known->kind == Kind::average)
-      return glove.info().kind == driver::GloveKind::recorded ? "an average hand" : "";
+      return glove.info().kind == driver::SourceKind::recorded ? "an average hand" : "";
     return known->user;
   }
   bool is_uncalibrated(Side side) const {

@@ -14,7 +14,7 @@ namespace nendo::takes {
 namespace {
 
 bool is_of_simulated(std::string_view source) {
-  const auto spec = driver::parse_glove_spec(source);
+  const auto spec = driver::parse_device_spec(source);
   return spec && spec->kind == "sim";
 }
 

@@ -13,8 +13,8 @@ namespace nendo::driver {
 namespace {
 
 /// For the drivers that need no GloveContext.
-template <Result<std::unique_ptr<Glove>> (*open)(const GloveSpec&, std::optional<Side>)>
-Result<std::unique_ptr<Glove>> alone(const GloveSpec& spec, std::optional<Side> side,
+template <Result<std::unique_ptr<Glove>> (*open)(const DeviceSpec&, std::optional<Side>)>
+Result<std::unique_ptr<Glove>> alone(const DeviceSpec& spec, std::optional<Side> side,
                                      const GloveContext& /*context*/) {
   return open(spec, side);
 }
@@ -40,7 +40,7 @@ constexpr std::array own_drivers{
 };
 
 /// Adds the glove's name as it was typed: the port alone is ambiguous with two gloves or `auto`.
-Error of_glove(const GloveSpec& spec, const Error& error) {
+Error of_glove(const DeviceSpec& spec, const Error& error) {
   const bool is_of_port = error.code == Errc::no_device || error.code == Errc::no_permission;
   if (!is_of_port || error.message.find(spec.text) != std::string::npos) return error;
   return {error.code, spec.text + ": " + error.message};
@@ -50,7 +50,7 @@ Error of_glove(const GloveSpec& spec, const Error& error) {
 
 Result<std::unique_ptr<Glove>> open_glove(std::string_view text, std::optional<Side> side,
                                           const GloveContext& context) {
-  const auto spec = parse_glove_spec(text);
+  const auto spec = parse_device_spec(text);
   if (!spec) return spec.error();
   std::string known;
   for (const GloveDriver& driver : glove_drivers(context)) {

@@ -2,13 +2,16 @@
 // The functions that open the kinds of gloves, for the table of drivers. All block for 4 s at most
 // (open_auto: 5 s) unless they take a deadline. Errors: usage (option), no_device, no_permission.
 
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include <nendo/base/result.hpp>
 #include <nendo/base/units.hpp>
 #include <nendo/driver/glove.hpp>
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/driver/open_tracker.hpp>
 
 namespace nendo::driver {
 
@@ -16,26 +19,32 @@ struct UsbWanted;
 
 /// Opens `auto[:left|right]`: tries the ports that are identified as gloves one after the other,
 /// until one is the wanted hand's.
-Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, std::optional<Side> side);
+Result<std::unique_ptr<Glove>> open_auto(const DeviceSpec& spec, std::optional<Side> side);
 
 /// Opens a glove without hardware, in this process, with the options of simulated_glove_options()
 /// and one of the motions of hand_motion.hpp or of `context`. The motion begins with start(). No
 /// record is ever lost. Errors: usage; that of the motion.
-Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side,
+Result<std::unique_ptr<Glove>> open_simulated(const DeviceSpec& spec, std::optional<Side> side,
                                               const GloveContext& context = {});
+
+/// Opens `sim[:MOTION][?rate=HZ&seed=N]`, a tracker without hardware, in this process, with one of
+/// the motions of wrist_motion.hpp, which begins with start(). Stations are numbers from 1 on. No
+/// record is ever lost. Error: usage.
+Result<std::unique_ptr<Tracker>> open_simulated_tracker(const DeviceSpec& spec,
+                                                        std::span<const std::uint16_t> stations);
 
 /// Opens `usb:VID:PID[?serial=TEXT&hand=left|right]`, a glove that is a USB device of its own.
 /// `side` is not used: the glove, or the option, determines the hand.
-Result<std::unique_ptr<Glove>> open_usb_glove(const GloveSpec& spec, std::optional<Side> side);
+Result<std::unique_ptr<Glove>> open_usb_glove(const DeviceSpec& spec, std::optional<Side> side);
 /// Does the same, and gives up at `deadline`.
-Result<std::unique_ptr<Glove>> open_usb_glove_by(const GloveSpec& spec, HostTime deadline);
+Result<std::unique_ptr<Glove>> open_usb_glove_by(const DeviceSpec& spec, HostTime deadline);
 
 namespace p5 {
 
 /// Opens the Essential Reality P5 that `wanted` names, which has five bend sensors. Its button A is
 /// the wrist switch. `hand` is an option, because a P5 does not report it; it was sold for the
 /// right hand. While it streams it does not move the mouse.
-Result<std::unique_ptr<Glove>> open_p5(const GloveSpec& spec, const UsbWanted& wanted,
+Result<std::unique_ptr<Glove>> open_p5(const DeviceSpec& spec, const UsbWanted& wanted,
                                        HostTime deadline);
 
 } // namespace p5
@@ -44,7 +53,7 @@ namespace fivedt_usb {
 
 /// Opens the 5DT Data Glove Ultra that `wanted` names, with 5 or 14 sensors, by cable or wireless;
 /// its product number is that of its model.
-Result<std::unique_ptr<Glove>> open_fivedt_usb(const GloveSpec& spec, const UsbWanted& wanted,
+Result<std::unique_ptr<Glove>> open_fivedt_usb(const DeviceSpec& spec, const UsbWanted& wanted,
                                                HostTime deadline);
 
 } // namespace fivedt_usb
@@ -57,7 +66,7 @@ namespace fivedt {
 /// for its hand and its name. At 9600 it is a wireless one, to which nothing is ever sent: it is
 /// recognised by its samples, and `hand`, or else `side`, determines the hand. Each finger has one
 /// flexion, in the slot of its MCP.
-Result<std::unique_ptr<Glove>> open_fivedt(const GloveSpec& spec, std::optional<Side> side);
+Result<std::unique_ptr<Glove>> open_fivedt(const DeviceSpec& spec, std::optional<Side> side);
 
 } // namespace fivedt
 
@@ -67,7 +76,7 @@ namespace forte {
 /// Glove at a serial port. The glove is set to send over `link`, and recognised by its records.
 /// `hand`, or else `side`, determines the hand. Each finger has two sensors, in the slots of its
 /// MCP and PIP joints (the thumb's MCP and IP).
-Result<std::unique_ptr<Glove>> open_forte(const GloveSpec& spec, std::optional<Side> side);
+Result<std::unique_ptr<Glove>> open_forte(const DeviceSpec& spec, std::optional<Side> side);
 
 } // namespace forte
 } // namespace nendo::driver

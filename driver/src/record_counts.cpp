@@ -4,7 +4,7 @@
 
 namespace nendo::driver {
 
-RecordCounts counts_of(const GloveStats& stats) noexcept {
+RecordCounts counts_of(const StreamStats& stats) noexcept {
   return {stats.records,     stats.missed,  stats.ring_refused,
           stats.bad_records, stats.clamped, stats.counts_missed};
 }
@@ -41,7 +41,7 @@ std::string in_words(const RecordCounts& counts) {
   return text;
 }
 
-std::string rate_shortfall(const GloveInfo& info, const GloveStats& stats) {
+std::string rate_shortfall(const GloveInfo& info, const StreamStats& stats) {
   constexpr double tolerance = 0.05;
   const bool known = !stats.counts_missed && info.rate_hz > 0.0 && stats.rate_hz > 0.0;
   if (!known || stats.rate_hz > (1.0 - tolerance) * info.rate_hz) return {};

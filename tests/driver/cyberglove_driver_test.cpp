@@ -47,7 +47,7 @@ Result<std::unique_ptr<Glove>> open_port(const ScriptedPort& port) {
   return open_glove(ScriptedKind::spec(port.path()));
 }
 
-void check_conservation(const GloveStats& stats) {
+void check_conservation(const StreamStats& stats) {
   test::check_conservation(stats, ScriptedKind::longest_record);
 }
 

@@ -30,7 +30,7 @@ struct Meeting {
                          : Result<Identity>(greeted.error())) {}
 
   std::string fact(const std::string& name) const {
-    for (const GloveFact& fact : identity->facts) {
+    for (const DeviceFact& fact : identity->facts) {
       if (fact.name == name) return fact.value;
     }
     return "none";

@@ -16,7 +16,7 @@ using namespace nendo::driver::cyberglove;
 namespace {
 
 Result<Options> options_of(const std::string& text) {
-  const auto spec = parse_glove_spec("serial:/dev/ttyUSB0" + text);
+  const auto spec = parse_device_spec("serial:/dev/ttyUSB0" + text);
   REQUIRE(spec);
   return read_options(*spec);
 }

@@ -47,7 +47,7 @@ TEST_SUITE("fivedt_usb_driver") {
       test::require_ok(glove->start(ring));
       CHECK(eventually([&] { return ring.size() >= 40; }));
       glove->stop();
-      const GloveStats stats = glove->stats();
+      const StreamStats stats = glove->stats();
       CHECK(stats.records == ring.size());
       CHECK(stats.bytes == 64 * stats.records);
       CHECK(stats.record_bytes == stats.bytes);

@@ -55,7 +55,7 @@ struct StreamingP5 {
   StreamingP5() { test::require_ok(glove->start(ring)); }
 };
 
-void check_conservation(const GloveStats& stats) {
+void check_conservation(const StreamStats& stats) {
   CHECK(stats.bytes == stats.record_bytes + stats.discarded_bytes);
   CHECK(stats.record_bytes == 24 * stats.records);
 }
@@ -79,7 +79,7 @@ TEST_SUITE("p5_driver") {
     CHECK_FALSE(glove->start(ring));
     CHECK(eventually([&] { return ring.size() >= 60; }));
     glove->stop();
-    const GloveStats stats = glove->stats();
+    const StreamStats stats = glove->stats();
     CHECK(stats.records == ring.size());
     CHECK(stats.bad_records == 0);
     check_conservation(stats);

@@ -28,7 +28,7 @@ std::map<std::string, std::uint64_t> numbers_in(const std::string& words) {
 
 TEST_SUITE("record_counts") {
   TEST_CASE("each loss has a name of its own, and what was sent is what came and what did not") {
-    GloveStats stats;
+    StreamStats stats;
     stats.records = 359;
     stats.missed = 98;
     stats.bad_records = 12;
@@ -56,7 +56,7 @@ TEST_SUITE("record_counts") {
   }
 
   TEST_CASE("unknown counts are left out: neither sent nor missed") {
-    GloveStats stats;
+    StreamStats stats;
     stats.records = 357;
     const RecordCounts counts = counts_of(stats);
     for (const auto& [name, count] : by_name(counts))
@@ -71,7 +71,7 @@ TEST_SUITE("record_counts") {
   TEST_CASE("a rate below the requested one is reported if losses cannot be counted") {
     GloveInfo info;
     info.rate_hz = 90.0;
-    GloveStats stats;
+    StreamStats stats;
     stats.rate_hz = 72.0;
     CHECK(rate_shortfall(info, stats) == "72.0 records per second of the 90.0 that were asked for");
     stats.counts_missed = true; // the counts show it already

@@ -40,7 +40,7 @@ struct RecordedGloves {
   RecordedGloves() {
     for (const Side side : {Side::left, Side::right}) {
       driver::GloveInfo glove;
-      glove.kind = driver::GloveKind::device;
+      glove.kind = driver::SourceKind::device;
       glove.source = "serial:/dev/ttyUSB0";
       glove.side = side;
       glove.sensors = side == Side::left ? sensors_22 : sensors_18;

@@ -21,7 +21,7 @@ public:
   const driver::GloveInfo& info() const noexcept override { return info_; }
   Result<void> start(SampleRing& /*ring*/) override { return {}; }
   void stop() noexcept override {}
-  driver::GloveStats stats() const noexcept override { return {}; }
+  driver::StreamStats stats() const noexcept override { return {}; }
   void set_feedback(const driver::Feedback& feedback) noexcept override {
     given.push_back(feedback.light);
     latest = feedback;

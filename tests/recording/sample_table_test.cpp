@@ -68,7 +68,7 @@ TEST_SUITE("sample_table") {
       CHECK(table->info.side == Side::right);
       CHECK(table->info.sensors == mask_of(std::array{Sensor::index_mcp, Sensor::thumb_roll}));
       CHECK(table->info.counts.max_count == 4095); // the next converter that counts so far
-      CHECK(table->info.kind == driver::GloveKind::recorded);
+      CHECK(table->info.kind == driver::SourceKind::recorded);
       CHECK(table->info.rate_hz == doctest::Approx(2.0));
     }
   }

@@ -13,7 +13,7 @@ namespace nendo::test {
 inline std::string fact(const driver::GloveInfo& info, std::string_view name) {
   const auto found =
       std::find_if(info.facts.begin(), info.facts.end(),
-                   [&](const driver::GloveFact& entry) { return entry.name == name; });
+                   [&](const driver::DeviceFact& entry) { return entry.name == name; });
   return found == info.facts.end() ? "" : found->value;
 }
 

@@ -37,7 +37,7 @@ struct Kind {
   std::unique_ptr<PtyUnit> plug(Side side) const { return std::make_unique<PtyUnit>(make(side)); }
 };
 
-inline void check_conservation(const driver::GloveStats& stats, std::uint64_t longest_record) {
+inline void check_conservation(const driver::StreamStats& stats, std::uint64_t longest_record) {
   CHECK(stats.bytes >= stats.record_bytes + stats.discarded_bytes);
   CHECK(stats.bytes - stats.record_bytes - stats.discarded_bytes < longest_record);
 }
@@ -88,7 +88,7 @@ inline void samples_are_in_order_and_add_up(const Kind& kind) {
       CHECK(count.value <= glove->info().counts.max_count);
   });
   CHECK(last <= HostClock::now());
-  const driver::GloveStats stats = glove->stats();
+  const driver::StreamStats stats = glove->stats();
   CHECK(stats.records == next);
   CHECK(stats.bad_records == 0);
   check_conservation(stats, kind.longest_record);
@@ -122,7 +122,7 @@ void a_full_ring_refuses_and_counts(const AnyKind& kind) {
   test::require_ok(glove->start(ring));
   CHECK(eventually([&] { return glove->stats().ring_refused > 5; }));
   glove->stop();
-  const driver::GloveStats stats = glove->stats();
+  const driver::StreamStats stats = glove->stats();
   CHECK(stats.records == stats.ring_refused + ring.size());
   check_conservation(stats, kind.longest_record);
 }
@@ -155,7 +155,7 @@ void a_silent_stream_is_started_again(const AnyKind& kind) {
   port->mute = false;
   CHECK(eventually([&] { return glove->stats().records > before + 3; }));
   glove->stop();
-  const driver::GloveStats stats = glove->stats();
+  const driver::StreamStats stats = glove->stats();
   CHECK(stats.silences == 1);
   CHECK(stats.reopened == 0);
   CHECK(stats.records == ring.size());

@@ -43,7 +43,7 @@ struct FaultOutcome {
   std::uint64_t delivered = 0;
   std::uint64_t flipped = 0; ///< delivered with one wrong bit in one sensor
   std::uint64_t broken = 0;  ///< delivered though their structure was wrong: must be 0
-  driver::GloveStats stats{};
+  driver::StreamStats stats{};
   double longest_gap_s = 0.0; ///< between two samples
   std::string complaint{};    ///< empty: as it should be
 };

@@ -23,7 +23,7 @@ struct Options {
 };
 
 void print_json(const FaultOutcome& outcome) {
-  const driver::GloveStats& stats = outcome.stats;
+  const driver::StreamStats& stats = outcome.stats;
   cli::print_line({{"fault", outcome.fault->name},
                    {"glove", outcome.glove->name},
                    {"sent", outcome.sent},

@@ -35,7 +35,7 @@ constexpr std::uint64_t undecided = 5;
 
 struct Tally {
   std::uint64_t sent = 0, faulted = 0, delivered = 0, flipped = 0, broken = 0;
-  driver::GloveStats stats;
+  driver::StreamStats stats;
   double seconds = 0.0;
   long memory_begin_kb = 0, memory_end_kb = 0;
 };
@@ -47,7 +47,7 @@ long resident_kb() {
 }
 
 std::uint64_t accounted(const driver::Glove& glove) {
-  const driver::GloveStats stats = glove.stats();
+  const driver::StreamStats stats = glove.stats();
   return stats.records + stats.missed;
 }
 
@@ -115,7 +115,7 @@ std::string complaint_about(const Tally& tally) {
 }
 
 void print(const Tally& tally, bool json) {
-  const driver::GloveStats& stats = tally.stats;
+  const driver::StreamStats& stats = tally.stats;
   if (json) {
     cli::print_line({{"sent", tally.sent},
                      {"faulted", tally.faulted},

@@ -24,11 +24,11 @@ struct Settings {
   bool holds = false; ///< after its last sample it is silent, and never says that it has ended
 };
 
-Error error_of(const driver::GloveSpec& spec, Errc code, const std::string& what) {
+Error error_of(const driver::DeviceSpec& spec, Errc code, const std::string& what) {
   return Error{code, spec.text + ": " + what};
 }
 
-Result<Settings> settings_of(const driver::GloveSpec& spec) {
+Result<Settings> settings_of(const driver::DeviceSpec& spec) {
   constexpr double min_speed = 0.01;
   constexpr double max_speed = 100.0;
   Settings settings;
@@ -106,11 +106,11 @@ private:
 
 class ReplayedGlove final : public driver::Glove {
 public:
-  ReplayedGlove(const driver::GloveSpec& spec, const Settings& settings, driver::GloveInfo info,
+  ReplayedGlove(const driver::DeviceSpec& spec, const Settings& settings, driver::GloveInfo info,
                 OpenSource open)
       : settings_(settings), info_(std::move(info)), open_(std::move(open)) {
     info_.facts.push_back({"recorded_from", info_.source});
-    info_.kind = driver::GloveKind::recorded;
+    info_.kind = driver::SourceKind::recorded;
     info_.recording = spec.target;
     info_.source = spec.text;
     info_.rate_hz *= settings.speed;
@@ -128,8 +128,8 @@ public:
   }
   void stop() noexcept override { reader_.stop(); }
 
-  driver::GloveStats stats() const noexcept override {
-    driver::GloveStats stats;
+  driver::StreamStats stats() const noexcept override {
+    driver::StreamStats stats;
     stats.records = records_.load(std::memory_order_relaxed);
     stats.missed = missed_.load(std::memory_order_relaxed);
     stats.ring_refused = ring_refused_.load(std::memory_order_relaxed);
@@ -221,7 +221,7 @@ std::vector<RecordedGlove> gloves_of(ChunkReader reader) {
   return gloves;
 }
 
-Result<RecordedGlove> choose(const driver::GloveSpec& spec, std::vector<RecordedGlove> gloves,
+Result<RecordedGlove> choose(const driver::DeviceSpec& spec, std::vector<RecordedGlove> gloves,
                              std::optional<Side> asked, std::optional<Side> wanted) {
   if (gloves.empty())
     return error_of(spec, Errc::bad_input, "no glove was recorded, or its description is damaged");
@@ -239,7 +239,7 @@ Result<RecordedGlove> choose(const driver::GloveSpec& spec, std::vector<Recorded
   return std::move(gloves.front());
 }
 
-Result<std::unique_ptr<driver::Glove>> open_recording(const driver::GloveSpec& spec,
+Result<std::unique_ptr<driver::Glove>> open_recording(const driver::DeviceSpec& spec,
                                                       const Settings& settings,
                                                       std::optional<Side> asked,
                                                       std::optional<Side> side) {
@@ -267,7 +267,7 @@ bool is_table(const std::string& name) {
   return ending == ".csv" || ending == ".tsv" || ending == ".txt";
 }
 
-Result<std::unique_ptr<driver::Glove>> open_table(const driver::GloveSpec& spec,
+Result<std::unique_ptr<driver::Glove>> open_table(const driver::DeviceSpec& spec,
                                                   const Settings& settings, TableWishes wishes) {
   if (const auto option = spec.options.find("rate"); option != spec.options.end()) {
     const auto rate_hz = to_number(option->second);
@@ -284,7 +284,7 @@ Result<std::unique_ptr<driver::Glove>> open_table(const driver::GloveSpec& spec,
       }));
 }
 
-Result<std::unique_ptr<driver::Glove>> open_replay(const driver::GloveSpec& spec,
+Result<std::unique_ptr<driver::Glove>> open_replay(const driver::DeviceSpec& spec,
                                                    std::optional<Side> side) {
   if (const auto fine = driver::allow_options(spec, {"hand", "speed", "loop", "end", "rate"});
       !fine)
@@ -305,7 +305,7 @@ driver::GloveDriver replay_driver() noexcept {
   return {"replay", "replay:FILE[?hand=left|right&speed=X&loop=yes|end=hold&rate=HZ]",
           "a glove as `nendo record` or `nendo run --record` recorded it, or a table of counts "
           "(.csv, .tsv, .txt)",
-          [](const driver::GloveSpec& spec, std::optional<Side> side,
+          [](const driver::DeviceSpec& spec, std::optional<Side> side,
              const driver::GloveContext& /*context*/) { return open_replay(spec, side); }};
 }
 

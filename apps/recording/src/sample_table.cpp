@@ -236,7 +236,7 @@ private:
     }
     const double span_s = to_seconds(rows_.back().arrival - rows_.front().arrival);
     table.info.rate_hz = span_s > 0.0 ? static_cast<double>(rows_.size() - 1) / span_s : 0.0;
-    table.info.kind = driver::GloveKind::recorded;
+    table.info.kind = driver::SourceKind::recorded;
     table.info.source = name_;
     table.info.model = "a table of " + std::to_string(columns_.sensors.size()) + " sensors";
     if (const std::string others = table_.columns_not_read(); !others.empty())

@@ -101,7 +101,7 @@ Result<hand::StoredCalibration> asked_for(const driver::GloveInfo& glove, Side s
 /// Returns the calibrations and sizes with which the hand of that side was recorded, if `glove`
 /// replays a recording that has such a hand. What adaptation had learned is left out.
 std::optional<hand::Wearer> recorded_wearer(const driver::GloveInfo& glove, Side side) {
-  if (glove.kind != driver::GloveKind::recorded) return std::nullopt;
+  if (glove.kind != driver::SourceKind::recorded) return std::nullopt;
   const auto reader = recording::TakeReader::open(glove.recording);
   if (!reader) return std::nullopt;
   for (const auto& hand : reader->setup().hands) {
@@ -146,7 +146,7 @@ Result<hand::Wearer> stored_wearer(const driver::GloveInfo& glove, Side side, ha
   } else if (is_uncalibrated(glove, wearer, side)) {
     report_none(glove, side, user, note);
   }
-  if (glove.kind == driver::GloveKind::simulated) return wearer; // its hand does not change
+  if (glove.kind == driver::SourceKind::simulated) return wearer; // its hand does not change
   const auto other = set_other(glove, side, options.user_of(opposite(side)), stored, wearer);
   const bool is_named = !options.user_of(opposite(side)).empty(); // then it is no surprise
   if (own && other && !is_named) report_other(glove, *own->file, *other->file, note);
@@ -241,7 +241,7 @@ Result<hand::Wearer> chosen_wearer(const driver::GloveInfo& glove, Side side,
   }
   const bool is_anybody = options.user_of(side).empty();
   // The simulated wearer has the hand that the default is for.
-  if (is_anybody && glove.kind == driver::GloveKind::simulated) return wearer;
+  if (is_anybody && glove.kind == driver::SourceKind::simulated) return wearer;
   if (is_anybody) {
     if (const auto recorded = recorded_wearer(glove, side)) {
       result.kind = FoundCalibration::Kind::recorded;
@@ -263,7 +263,7 @@ Result<hand::Wearer> find_wearer(const driver::GloveInfo& glove, Side side,
 }
 
 bool is_uncalibrated(const driver::GloveInfo& glove, const hand::Wearer& wearer, Side side) {
-  return glove.kind == driver::GloveKind::device && !wearer.adapt &&
+  return glove.kind == driver::SourceKind::device && !wearer.adapt &&
          wearer.of(side).calibration == hand::default_calibration(glove.counts);
 }
 

@@ -91,7 +91,7 @@ Result<void> start(std::span<OpenHand> hands) {
 
 Result<void> begin_again(std::span<OpenHand> hands) {
   const auto is_worn = [](const OpenHand& hand) {
-    return hand.glove->info().kind == driver::GloveKind::device;
+    return hand.glove->info().kind == driver::SourceKind::device;
   };
   for (OpenHand& hand : hands)
     if (!is_worn(hand)) hand.glove->stop();

@@ -105,7 +105,7 @@ public:
   }
 
   void push(std::span<const std::byte> chunk, HostTime arrival,
-            SampleSink& sink) noexcept override {
+            Sink& sink) noexcept override {
     // After eg another glove may be in the unit: its sensors are unknown until the unit was asked.
     const auto check = [&](Record& record) {
       if (!glove_removed_) return identity_.hires ? hires_check_(record, arrival) : check_(record);
@@ -179,7 +179,7 @@ private:
     sample.measured = clock_.to_host(sample.device_time, arrival);
   }
 
-  void deliver(const Record& record, HostTime arrival, SampleSink& sink) noexcept {
+  void deliver(const Record& record, HostTime arrival, Sink& sink) noexcept {
     GloveSample sample;
     const ChannelMap& channels = identity_.channels;
     for (std::size_t k = 0; k < channels.count; ++k) {
@@ -216,7 +216,7 @@ Result<std::unique_ptr<Glove>> open_cyberglove(const std::string& source, OpenPo
                            std::make_unique<CyberGloveProtocol>(options), deadline);
 }
 
-Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime deadline) {
+Result<std::unique_ptr<Glove>> open_serial_by(const DeviceSpec& spec, HostTime deadline) {
   const auto options = read_options(spec);
   if (!options) return options.error();
   if (auto named = require_port(spec, "serial:/dev/ttyUSB0"); !named) return named.error();
@@ -224,7 +224,7 @@ Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime de
   return open_cyberglove(spec.text, follow_port(spec.target, baud), *options, deadline);
 }
 
-Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, std::optional<Side> /*side*/) {
+Result<std::unique_ptr<Glove>> open_serial(const DeviceSpec& spec, std::optional<Side> /*side*/) {
   return open_serial_by(spec, HostClock::now() + open_budget);
 }
 

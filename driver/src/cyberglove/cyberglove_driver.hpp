@@ -17,9 +17,9 @@ namespace nendo::driver::cyberglove {
 
 /// Opens `serial:PATH`, as the table of drivers wants it. `side` is not used, because the glove
 /// says which hand it is.
-Result<std::unique_ptr<Glove>> open_serial(const GloveSpec& spec, std::optional<Side> side);
+Result<std::unique_ptr<Glove>> open_serial(const DeviceSpec& spec, std::optional<Side> side);
 /// Does the same, and gives up at `deadline`.
-Result<std::unique_ptr<Glove>> open_serial_by(const GloveSpec& spec, HostTime deadline);
+Result<std::unique_ptr<Glove>> open_serial_by(const DeviceSpec& spec, HostTime deadline);
 
 /// Opens the port, finds the line rate unless `options` name it, and identifies and sets up the
 /// glove. The options are set again after every interruption. Errors: those of `open_port`;

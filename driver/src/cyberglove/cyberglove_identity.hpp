@@ -29,7 +29,7 @@ struct Identity {
   bool switch_drives_light = false;
   std::optional<WordOrder> word_order; ///< byte order of the reply to ?T, once known
   Abilities abilities;
-  std::vector<GloveFact> facts;
+  std::vector<DeviceFact> facts;
   std::vector<std::string> notes; ///< decisions that the user should know, one line each
 };
 

@@ -19,13 +19,13 @@ namespace {
 constexpr double min_rate_hz = 0.1;
 constexpr double max_rate_hz = 1000.0;
 
-Error wrong(const GloveSpec& spec, const std::string& key, const std::string& known) {
+Error wrong(const DeviceSpec& spec, const std::string& key, const std::string& known) {
   return {Errc::usage, spec.text + ": " + key + "=" + spec.options.at(key) + " is not " + known};
 }
 
 /// Sets `option` from the text of `key`, as `read` understands it.
 template <class T, class Read>
-Result<void> take(const GloveSpec& spec, const std::string& key, const std::string& known,
+Result<void> take(const DeviceSpec& spec, const std::string& key, const std::string& known,
                   T& option, Read&& read) {
   const auto found = spec.options.find(key);
   if (found == spec.options.end()) return {};
@@ -63,7 +63,7 @@ std::optional<SensorMask> read_mask(std::string_view text) {
 }
 
 /// Refuses options that exclude each other.
-Result<void> check_together(const GloveSpec& spec, const Options& options) {
+Result<void> check_together(const DeviceSpec& spec, const Options& options) {
   const auto usage = [&](const char* what) { return Error{Errc::usage, spec.text + ": " + what}; };
   if (options.sync && options.rate_hz)
     return usage("sync=on: the pulses make the rate; leave out rate=");
@@ -89,7 +89,7 @@ Error too_fast(double rate_hz, std::size_t record_bytes, int baud, const std::st
 
 } // namespace
 
-Result<Options> read_options(const GloveSpec& spec) {
+Result<Options> read_options(const DeviceSpec& spec) {
   auto good = allow_options(
       spec, {"baud", "rate", "mask", "stamps", "filter", "quantised", "sync", "hires", "hand"});
   Options options;

@@ -34,7 +34,7 @@ struct Options {
 };
 
 /// Reads the options. Error: usage, naming the option and what it may be.
-Result<Options> read_options(const GloveSpec& spec);
+Result<Options> read_options(const DeviceSpec& spec);
 
 /// The rates to try, likeliest first. Every driver since about 2000 uses
 /// 115200; the others are defaults of older units.

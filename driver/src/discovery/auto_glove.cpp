@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// nullopt: either hand will do.
-Result<std::optional<Side>> wanted_side(const GloveSpec& spec, std::optional<Side> side) {
+Result<std::optional<Side>> wanted_side(const DeviceSpec& spec, std::optional<Side> side) {
   if (spec.target.empty()) return side;
   for (const Side known : {Side::left, Side::right}) {
     if (spec.target == name_of(known)) return std::optional(known);
@@ -22,7 +22,7 @@ Result<std::optional<Side>> wanted_side(const GloveSpec& spec, std::optional<Sid
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, std::optional<Side> side) {
+Result<std::unique_ptr<Glove>> open_auto(const DeviceSpec& spec, std::optional<Side> side) {
   if (auto allowed = allow_options(spec, {}); !allowed) return allowed.error();
   const auto wanted = wanted_side(spec, side);
   if (!wanted) return wanted.error();
@@ -31,7 +31,7 @@ Result<std::unique_ptr<Glove>> open_auto(const GloveSpec& spec, std::optional<Si
   Errc code = Errc::no_device;
   for (const GloveCandidate& candidate : list_candidates()) {
     if (!candidate.identified || candidate.spec.empty()) continue;
-    const auto parsed = parse_glove_spec(candidate.spec);
+    const auto parsed = parse_device_spec(candidate.spec);
     if (!parsed || HostClock::now() >= deadline) continue;
     auto glove = candidate.kind == DeviceKind::serial_port
                      ? cyberglove::open_serial_by(*parsed, deadline)

@@ -50,7 +50,7 @@ bool has_own_serial(const UsbIdentity& usb, const std::vector<SerialPortInfo>& p
 
 /// `serial:` with the name, or nothing if the grammar cannot express it.
 std::string serial_spec(const std::string& name) {
-  const auto spec = parse_glove_spec("serial:" + name);
+  const auto spec = parse_device_spec("serial:" + name);
   return spec && spec->target == name ? spec->text : std::string{};
 }
 

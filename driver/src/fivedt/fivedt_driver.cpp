@@ -8,6 +8,7 @@
 
 #include "drivers.hpp"
 #include "fivedt/fivedt_parser.hpp"
+#include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/open_transport.hpp"
 
@@ -58,7 +59,7 @@ public:
   }
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
-            SampleSink& sink) noexcept override {
+            Sink& sink) noexcept override {
     const auto take = [&](const Record& record) {
       GloveSample sample;
       for (std::size_t k = 0; k < fingers; ++k)
@@ -201,7 +202,7 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_fivedt(const GloveSpec& spec, std::optional<Side> side) {
+Result<std::unique_ptr<Glove>> open_fivedt(const DeviceSpec& spec, std::optional<Side> side) {
   if (auto allowed = allow_options(spec, {"baud", "hand", "left_first"}); !allowed)
     return allowed.error();
   const auto baud = number_option(spec, "baud", {wired_baud, wireless_baud});

@@ -47,7 +47,7 @@ public:
   }
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
-            SampleSink& sink) noexcept override {
+            Sink& sink) noexcept override {
     const auto report = parser_.push(chunk);
     if (!report) return sink.reject();
     GloveSample sample;
@@ -76,7 +76,7 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_fivedt_usb(const GloveSpec& spec, const UsbWanted& wanted,
+Result<std::unique_ptr<Glove>> open_fivedt_usb(const DeviceSpec& spec, const UsbWanted& wanted,
                                                HostTime deadline) {
   const auto model = model_of(wanted.id.product);
   assert(model);

@@ -4,6 +4,7 @@
 
 #include "drivers.hpp"
 #include "forte/forte_parser.hpp"
+#include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/open_transport.hpp"
 
@@ -53,7 +54,7 @@ public:
   }
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
-            SampleSink& sink) noexcept override {
+            Sink& sink) noexcept override {
     const auto take = [&](const Record& record) {
       GloveSample sample;
       for (std::size_t k = 0; k < slots.size(); ++k)
@@ -100,7 +101,7 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_forte(const GloveSpec& spec, std::optional<Side> side) {
+Result<std::unique_ptr<Glove>> open_forte(const DeviceSpec& spec, std::optional<Side> side) {
   if (auto allowed = allow_options(spec, {"baud", "hand", "link"}); !allowed)
     return allowed.error();
   const auto rate = number_option(spec, "baud", {baud, other_baud});

@@ -13,6 +13,7 @@
 #include <nendo/driver/glove_options.hpp>
 
 #include "lucidgloves/lucidgloves_parser.hpp"
+#include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "transport/open_transport.hpp"
 
@@ -129,7 +130,7 @@ public:
   }
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
-            SampleSink& sink) noexcept override {
+            Sink& sink) noexcept override {
     const auto take = [&](const Line& line) {
       if (!hands_.option) // an answer may be later than identify() waits
         side_ = hand_in(line).value_or(side_);
@@ -231,7 +232,7 @@ Result<std::unique_ptr<Glove>> open_lucidgloves_by(const std::string& source, Op
                            HostClock::now() + open_budget);
 }
 
-Result<std::unique_ptr<Glove>> open_lucidgloves(const GloveSpec& spec, std::optional<Side> side) {
+Result<std::unique_ptr<Glove>> open_lucidgloves(const DeviceSpec& spec, std::optional<Side> side) {
   if (auto allowed = allow_options(spec, {"baud", "hand", "range"}); !allowed)
     return allowed.error();
   const auto rate = number_option(spec, "baud", {baud, 57'600, 38'400, 19'200, 9'600});

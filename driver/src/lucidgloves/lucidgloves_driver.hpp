@@ -29,7 +29,7 @@ namespace nendo::driver::lucidgloves {
 /// A legacy firmware gets only empty lines; its brakes are not used (lucidgloves_parser.hpp). The
 /// switch at the wrist stays unknown, because the flag "grab" is not a switch but a gesture that
 /// the firmware finds in the curls.
-Result<std::unique_ptr<Glove>> open_lucidgloves(const GloveSpec& spec, std::optional<Side> side);
+Result<std::unique_ptr<Glove>> open_lucidgloves(const DeviceSpec& spec, std::optional<Side> side);
 
 /// Does the same for any port, with the range and the settings that the options hold.
 Result<std::unique_ptr<Glove>> open_lucidgloves_by(const std::string& source, OpenPort open_port,

@@ -47,7 +47,7 @@ public:
   }
 
   void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
-            SampleSink& sink) noexcept override {
+            Sink& sink) noexcept override {
     const auto report = parser_.push(chunk);
     if (!report) return sink.reject();
     GloveSample sample;
@@ -69,7 +69,7 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_p5(const GloveSpec& spec, const UsbWanted& wanted,
+Result<std::unique_ptr<Glove>> open_p5(const DeviceSpec& spec, const UsbWanted& wanted,
                                        HostTime deadline) {
   return open_report_glove(spec, wanted, {interface_number, report_bytes}, deadline,
                            [](std::optional<Side> hand) {

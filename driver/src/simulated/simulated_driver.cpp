@@ -23,7 +23,7 @@ public:
   SimulatedGlove(const SimulatedGloveOptions& options, SensorMotion motion)
       : motion_(std::move(motion)), wearer_(options.seed),
         period_(from_seconds(1.0 / options.rate_hz)) {
-    info_.kind = GloveKind::simulated;
+    info_.kind = SourceKind::simulated;
     info_.source = options.source;
     info_.model = "simulated glove, " + std::to_string(options.sensors) + " sensors, motion " +
                   options.motion;
@@ -42,8 +42,8 @@ public:
   }
   void stop() noexcept override { reader_.stop(); }
 
-  GloveStats stats() const noexcept override {
-    GloveStats stats;
+  StreamStats stats() const noexcept override {
+    StreamStats stats;
     stats.records = records_.load(std::memory_order_relaxed);
     stats.ring_refused = ring_refused_.load(std::memory_order_relaxed);
     stats.counts_missed = true; // there is no line on which records get lost
@@ -121,12 +121,12 @@ bool set_option(SimulatedGloveOptions& settings, const std::string& key, const s
   return value == std::to_string(settings.sensors);
 }
 
-Error usage(const GloveSpec& spec, std::string_view what) {
+Error usage(const DeviceSpec& spec, std::string_view what) {
   return Error{Errc::usage, std::string(spec.text).append(": ").append(what)};
 }
 
 /// One of this library's motions, or else one that the program adds.
-Result<SensorMotion> motion_of(const GloveSpec& spec, const SimulatedGloveOptions& options,
+Result<SensorMotion> motion_of(const DeviceSpec& spec, const SimulatedGloveOptions& options,
                                const std::vector<NamedMotion>& added) {
   const auto own = find_motion(options.motion);
   if (own)
@@ -143,7 +143,7 @@ Result<SensorMotion> motion_of(const GloveSpec& spec, const SimulatedGloveOption
 
 } // namespace
 
-Result<SimulatedGloveOptions> simulated_glove_options(const GloveSpec& spec,
+Result<SimulatedGloveOptions> simulated_glove_options(const DeviceSpec& spec,
                                                       std::optional<Side> side) {
   SimulatedGloveOptions settings;
   settings.source = spec.text;
@@ -169,7 +169,7 @@ std::unique_ptr<Glove> make_simulated_glove(const SimulatedGloveOptions& options
   return std::make_unique<SimulatedGlove>(options, std::move(motion));
 }
 
-Result<std::unique_ptr<Glove>> open_simulated(const GloveSpec& spec, std::optional<Side> side,
+Result<std::unique_ptr<Glove>> open_simulated(const DeviceSpec& spec, std::optional<Side> side,
                                               const GloveContext& context) {
   const auto options = simulated_glove_options(spec, side);
   if (!options) return options.error();

@@ -1,68 +1,22 @@
 #pragma once
-// A glove that sends a stream of bytes. It runs the reader thread, counts, and handles silence,
-// loss and return of the device. The GloveProtocol decodes the bytes.
+// A glove that sends a stream of bytes.
 
-#include <algorithm>
-#include <array>
-#include <chrono>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
 #include <memory>
-#include <span>
 #include <string>
 
 #include <nendo/base/result.hpp>
 #include <nendo/base/units.hpp>
 #include <nendo/driver/glove.hpp>
 
+#include "stream/device_stream.hpp"
 #include "stream/glove_protocol.hpp"
-#include "transport/transport.hpp"
 
 namespace nendo::driver {
-
-/// Opens the device. The reader thread calls it again whenever the device has vanished.
-using OpenPort = std::function<Result<std::unique_ptr<Transport>>()>;
-
-/// Max time to open a glove.
-inline constexpr std::chrono::milliseconds open_budget{4000};
 
 /// Opens the port and identifies the glove, by `deadline`. Errors: those of `open_port` and of
 /// GloveProtocol::identify.
 Result<std::unique_ptr<Glove>> open_stream_glove(const std::string& source, OpenPort open_port,
                                                  std::unique_ptr<GloveProtocol> protocol,
                                                  HostTime deadline);
-
-/// Passes received bytes to `take(std::span<const std::byte>)` until that returns true (done), the
-/// device is gone, or the time is over or `limit` is cancelled (timeout). Checks that every 0.1 s.
-template <class Take>
-IoStatus listen(Transport& transport, const ReplyDeadline& limit,
-                std::chrono::milliseconds max_time, Take&& take) {
-  constexpr std::chrono::milliseconds slice{100};
-  std::array<std::byte, 1024> buffer;
-  const HostTime until = std::min(limit.deadline, HostClock::now() + max_time);
-  for (;;) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - HostClock::now());
-    if (left.count() <= 0 || limit.cancelled.stop_requested()) return IoStatus::timeout;
-    const auto [status, count] = transport.read_some(buffer, std::min(left, slice));
-    if (status == IoStatus::gone) return IoStatus::gone;
-    if (count > 0 && take(std::span<const std::byte>(buffer).first(count))) return IoStatus::done;
-  }
-}
-
-/// Discards the bytes that have arrived, also those in the system's buffers; a pseudo-terminal
-/// keeps some 17 kB. Does not wait. Returns the number of bytes read.
-inline std::uint64_t drop_waiting(Transport& transport) noexcept {
-  constexpr std::uint64_t max_bytes = 65'536; // a device may send faster than any host reads
-  std::array<std::byte, 1024> buffer;
-  transport.discard_input();
-  std::uint64_t dropped = 0;
-  while (dropped < max_bytes) {
-    const auto [status, count] = transport.read_some(buffer, std::chrono::milliseconds(0));
-    if (status != IoStatus::done) break;
-    dropped += count;
-  }
-  return dropped;
-}
 
 } // namespace nendo::driver

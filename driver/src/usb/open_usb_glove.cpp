@@ -20,7 +20,7 @@ namespace {
 /// All gloves of a maker have one driver.
 struct UsbDriver {
   std::uint16_t vendor;
-  Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, const UsbWanted& wanted,
+  Result<std::unique_ptr<Glove>> (*open)(const DeviceSpec& spec, const UsbWanted& wanted,
                                          HostTime deadline);
 };
 
@@ -42,7 +42,7 @@ std::optional<std::uint16_t> read_number(std::string_view text) noexcept {
   return text.size() == 4 ? number_in<std::uint16_t>(text, 16) : std::nullopt;
 }
 
-Result<UsbId> id_of(const GloveSpec& spec) {
+Result<UsbId> id_of(const DeviceSpec& spec) {
   const std::string_view target = spec.target;
   const std::size_t colon = target.find(':');
   const auto vendor = read_number(target.substr(0, colon));
@@ -53,7 +53,7 @@ Result<UsbId> id_of(const GloveSpec& spec) {
                                         "four hexadecimal digits each, e.g. usb:0d7f:0100"};
 }
 
-Error unknown(const GloveSpec& spec) {
+Error unknown(const DeviceSpec& spec) {
   std::string known;
   const auto models = udev::usb_glove_models();
   for (std::size_t first = 0, next = 0; first < models.size(); first = next) {
@@ -68,7 +68,7 @@ Error unknown(const GloveSpec& spec) {
 
 } // namespace
 
-Result<std::unique_ptr<Glove>> open_usb_glove_by(const GloveSpec& spec, HostTime deadline) {
+Result<std::unique_ptr<Glove>> open_usb_glove_by(const DeviceSpec& spec, HostTime deadline) {
   const auto id = id_of(spec);
   if (!id) return id.error();
   const UsbDriver* const driver = find_driver(*id);
@@ -79,7 +79,7 @@ Result<std::unique_ptr<Glove>> open_usb_glove_by(const GloveSpec& spec, HostTime
   return driver->open(spec, wanted, deadline);
 }
 
-Result<std::unique_ptr<Glove>> open_usb_glove(const GloveSpec& spec, std::optional<Side> /*side*/) {
+Result<std::unique_ptr<Glove>> open_usb_glove(const DeviceSpec& spec, std::optional<Side> /*side*/) {
   return open_usb_glove_by(spec, HostClock::now() + open_budget);
 }
 
@@ -94,8 +94,8 @@ OpenPort usb_opener(UsbWanted wanted, const UsbInterface& interface) {
   };
 }
 
-std::vector<GloveFact> facts_of(const UsbIdentity& identity) {
-  std::vector<GloveFact> facts{{"usb_id", to_string(id_of(identity))},
+std::vector<DeviceFact> facts_of(const UsbIdentity& identity) {
+  std::vector<DeviceFact> facts{{"usb_id", to_string(id_of(identity))},
                                {"usb_port", identity.place}};
   if (!identity.manufacturer.empty()) facts.push_back({"manufacturer", identity.manufacturer});
   if (!identity.product.empty()) facts.push_back({"product", identity.product});

@@ -8,6 +8,7 @@
 #include <nendo/driver/glove.hpp>
 #include <nendo/driver/glove_options.hpp>
 
+#include "stream/listen.hpp"
 #include "stream/stream_glove.hpp"
 #include "stream/stream_parser.hpp"
 #include "transport/usb_transport.hpp"
@@ -19,7 +20,7 @@ namespace nendo::driver {
 OpenPort usb_opener(UsbWanted wanted, const UsbInterface& interface);
 
 /// Returns the kernel's data about the device: numbers, port, maker, product and serial number.
-std::vector<GloveFact> facts_of(const UsbIdentity& identity);
+std::vector<DeviceFact> facts_of(const UsbIdentity& identity);
 
 /// A glove that sends reports whenever they are read. `Parser` is a ReportParser.
 template <class Parser>
@@ -59,7 +60,7 @@ protected:
 /// Opens a glove with the options `serial` and `hand`, by `deadline`; `make(hand)` returns its
 /// protocol. Errors: usage (option), those of open_usb(), no_device (it sends nothing).
 template <class Make>
-Result<std::unique_ptr<Glove>> open_report_glove(const GloveSpec& spec, const UsbWanted& wanted,
+Result<std::unique_ptr<Glove>> open_report_glove(const DeviceSpec& spec, const UsbWanted& wanted,
                                                  const UsbInterface& interface, HostTime deadline,
                                                  Make&& make) {
   if (auto allowed = allow_options(spec, {"serial", "hand"}); !allowed) return allowed.error();

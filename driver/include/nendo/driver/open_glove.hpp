@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,20 +14,10 @@
 #include <vector>
 
 #include <nendo/base/result.hpp>
+#include <nendo/driver/device_spec.hpp>
 #include <nendo/driver/glove.hpp>
 
 namespace nendo::driver {
-
-/// `kind:target?key=value&key=value`, split but not validated.
-struct GloveSpec {
-  std::string text; ///< as typed
-  std::string kind;
-  std::string target; ///< may be empty
-  std::map<std::string, std::string> options;
-};
-
-/// Error: usage, naming the malformed part.
-NENDO_API Result<GloveSpec> parse_glove_spec(std::string_view text);
 
 /// Returns the joint angle of each sensor, by slot, in radians, at `time_s` >= 0 seconds after
 /// start(). Flexion is positive; abduction is the angle between neighbouring fingers. The glove's
@@ -60,7 +49,7 @@ struct GloveDriver {
   std::string_view grammar; ///< the grammar in `--help`
   std::string_view summary; ///< the description in `--help`
   /// Opens and identifies the glove, as open_glove() does.
-  Result<std::unique_ptr<Glove>> (*open)(const GloveSpec& spec, std::optional<Side> side,
+  Result<std::unique_ptr<Glove>> (*open)(const DeviceSpec& spec, std::optional<Side> side,
                                          const GloveContext& context);
 };
 

@@ -31,7 +31,7 @@ struct RecordCounts {
   friend bool operator==(const RecordCounts&, const RecordCounts&) = default;
 };
 
-NENDO_API RecordCounts counts_of(const GloveStats& stats) noexcept;
+NENDO_API RecordCounts counts_of(const StreamStats& stats) noexcept;
 /// Returns `now` minus `earlier`.
 NENDO_API RecordCounts since(const RecordCounts& earlier, const RecordCounts& now) noexcept;
 
@@ -45,6 +45,6 @@ NENDO_API std::string in_words(const RecordCounts& counts);
 
 /// Returns "72.0 records per second of the 90.0 that were asked for" if losses cannot be counted
 /// and the rate is too low by 5 % or more; else an empty string.
-NENDO_API std::string rate_shortfall(const GloveInfo& info, const GloveStats& stats);
+NENDO_API std::string rate_shortfall(const GloveInfo& info, const StreamStats& stats);
 
 } // namespace nendo::driver

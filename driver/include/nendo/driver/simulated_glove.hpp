@@ -20,7 +20,7 @@ NENDO_API std::vector<std::string_view> motion_names();
 /// Parses `sim:MOTION?seed=N&rate=HZ&hand=left|right&sensors=18|22`; the motion and all options are
 /// optional. The default for `hand` is `side`, or else right. Error: usage, naming the option and
 /// the allowed values.
-NENDO_API Result<SimulatedGloveOptions> simulated_glove_options(const GloveSpec& spec,
+NENDO_API Result<SimulatedGloveOptions> simulated_glove_options(const DeviceSpec& spec,
                                                                 std::optional<Side> side);
 
 /// Makes a glove with the given motion. Sample n comes n periods after start(); missed deadlines

@@ -1,5 +1,5 @@
+#include <nendo/driver/device_spec.hpp>
 #include <nendo/driver/glove_options.hpp>
-#include <nendo/driver/open_glove.hpp>
 
 #include <algorithm>
 #include <string>
@@ -9,10 +9,10 @@ namespace nendo::driver {
 namespace {
 
 Error usage(std::string_view text, const std::string& what) {
-  return {Errc::usage, "glove \"" + std::string(text) + "\": " + what};
+  return {Errc::usage, "\"" + std::string(text) + "\": " + what};
 }
 
-Result<void> parse_options(std::string_view options, GloveSpec& spec) {
+Result<void> parse_options(std::string_view options, DeviceSpec& spec) {
   for (;;) {
     const std::size_t end = std::min(options.find('&'), options.size());
     const std::string_view option = options.substr(0, end);
@@ -29,7 +29,7 @@ Result<void> parse_options(std::string_view options, GloveSpec& spec) {
   }
 }
 
-Error none_of(const GloveSpec& spec, const std::pair<const std::string, std::string>& option,
+Error none_of(const DeviceSpec& spec, const std::pair<const std::string, std::string>& option,
               const std::string& list) {
   return {Errc::usage,
           spec.text + ": " + option.first + "=" + option.second + " is none of " + list};
@@ -37,17 +37,17 @@ Error none_of(const GloveSpec& spec, const std::pair<const std::string, std::str
 
 } // namespace
 
-Result<GloveSpec> parse_glove_spec(std::string_view text) {
+Result<DeviceSpec> parse_device_spec(std::string_view text) {
   constexpr std::size_t max_characters = 4096; // the longest path that the system takes
-  if (text.size() > max_characters) return Error{Errc::usage, "the glove's name is too long"};
+  if (text.size() > max_characters) return Error{Errc::usage, "the name of a device is too long"};
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
   if (std::any_of(text.begin(), text.end(), is_control)) {
-    return Error{Errc::usage, "the glove's name contains control characters"};
+    return Error{Errc::usage, "the name of a device contains control characters"};
   }
   if (!text.empty() && (text.front() == '/' || text.front() == '.')) {
     return usage(text, "a port is written serial:" + std::string(text));
   }
-  GloveSpec spec;
+  DeviceSpec spec;
   spec.text = text;
   const std::size_t question = text.find('?');
   const std::string_view head = text.substr(0, question);
@@ -63,19 +63,19 @@ Result<GloveSpec> parse_glove_spec(std::string_view text) {
   return spec;
 }
 
-Result<void> allow_options(const GloveSpec& spec, std::initializer_list<std::string_view> known) {
+Result<void> allow_options(const DeviceSpec& spec, std::initializer_list<std::string_view> known) {
   for (const auto& [key, value] : spec.options) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     std::string list;
     for (const std::string_view name : known)
       list.append(list.empty() ? "; known: " : ", ").append(name);
-    return Error{Errc::usage, "glove \"" + spec.text + "\": unknown option " + key +
+    return Error{Errc::usage, "\"" + spec.text + "\": unknown option " + key +
                                   (list.empty() ? "; it has none" : list)};
   }
   return {};
 }
 
-Result<int> number_option(const GloveSpec& spec, std::string_view key,
+Result<int> number_option(const DeviceSpec& spec, std::string_view key,
                           std::initializer_list<int> known) {
   const auto option = spec.options.find(std::string(key));
   if (option == spec.options.end()) return *known.begin();
@@ -87,7 +87,7 @@ Result<int> number_option(const GloveSpec& spec, std::string_view key,
   return none_of(spec, *option, list);
 }
 
-Result<std::string_view> word_option(const GloveSpec& spec, std::string_view key,
+Result<std::string_view> word_option(const DeviceSpec& spec, std::string_view key,
                                      std::initializer_list<std::string_view> known) {
   const auto option = spec.options.find(std::string(key));
   if (option == spec.options.end()) return *known.begin();
@@ -99,7 +99,7 @@ Result<std::string_view> word_option(const GloveSpec& spec, std::string_view key
   return none_of(spec, *option, list);
 }
 
-Result<std::optional<Side>> hand_option(const GloveSpec& spec) {
+Result<std::optional<Side>> hand_option(const DeviceSpec& spec) {
   if (spec.options.find("hand") == spec.options.end()) return std::optional<Side>{};
   const auto hand = word_option(spec, "hand", {"left", "right"});
   if (!hand) return hand.error();
@@ -120,7 +120,7 @@ std::string hand_override(std::optional<Side> glove, const SideOptions& wishes) 
          "-hand one, as hand= asks";
 }
 
-Result<void> require_port(const GloveSpec& spec, std::string_view example) {
+Result<void> require_port(const DeviceSpec& spec, std::string_view example) {
   if (!spec.target.empty()) return {};
   return Error{Errc::usage, spec.text + ": name the port, e.g. " + std::string(example)};
 }

@@ -6,16 +6,16 @@
 
 #include <doctest/doctest.h>
 
-namespace glove_spec_test {
+namespace device_spec_test {
 
 using nendo::Errc;
 using nendo::driver::glove_drivers;
 using nendo::driver::open_glove;
-using nendo::driver::parse_glove_spec;
+using nendo::driver::parse_device_spec;
 
 TEST_SUITE("glove_spec") {
   TEST_CASE("a specification is kind, target and options") {
-    const auto spec = parse_glove_spec("sim:pinch?seed=7&rate=100");
+    const auto spec = parse_device_spec("sim:pinch?seed=7&rate=100");
     REQUIRE(spec);
     CHECK(spec->text == "sim:pinch?seed=7&rate=100");
     CHECK(spec->kind == "sim");
@@ -26,9 +26,9 @@ TEST_SUITE("glove_spec") {
   }
 
   TEST_CASE("target and options may be missing, and a path may contain colons") {
-    CHECK(parse_glove_spec("auto")->target.empty());
-    CHECK(parse_glove_spec("sim?seed=1")->options.at("seed") == "1");
-    CHECK(parse_glove_spec("serial:/dev/serial/by-path/pci-0000:00:14.0-port0")->target ==
+    CHECK(parse_device_spec("auto")->target.empty());
+    CHECK(parse_device_spec("sim?seed=1")->options.at("seed") == "1");
+    CHECK(parse_device_spec("serial:/dev/serial/by-path/pci-0000:00:14.0-port0")->target ==
           "/dev/serial/by-path/pci-0000:00:14.0-port0");
   }
 
@@ -36,12 +36,12 @@ TEST_SUITE("glove_spec") {
     for (const char* text : {"", ":x", "?a=b", "sim?", "sim?seed", "sim?=7",
                              "sim?seed=", "sim?a=1&", "sim?a=1&a=2", "sim:\n", "sim:\x1b[2J"}) {
       CAPTURE(text);
-      const auto spec = parse_glove_spec(text);
+      const auto spec = parse_device_spec(text);
       REQUIRE_FALSE(spec);
       CHECK(spec.error().code == Errc::usage);
       CHECK(spec.error().message.find('\n') == std::string::npos);
     }
-    CHECK(parse_glove_spec("sim?a=1&a=2").error().message.find("option a") != std::string::npos);
+    CHECK(parse_device_spec("sim?a=1&a=2").error().message.find("option a") != std::string::npos);
   }
 
   TEST_CASE("a bare path is answered by how to write it") {
@@ -103,4 +103,4 @@ TEST_SUITE("glove_spec") {
   }
 }
 
-} // namespace glove_spec_test
+} // namespace device_spec_test

@@ -1,0 +1,118 @@
+#include "simulated/wrist_motion.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <nendo/base/text.hpp>
+
+namespace nendo::driver {
+namespace {
+
+constexpr std::array<std::string_view, 4> motion_names{"rest", "orbit", "table", "cross"};
+
+using Vector = std::array<double, 3>;
+using Quaternion = std::array<double, 4>; // x y z w
+
+constexpr double tau = 2.0 * std::numbers::pi;
+constexpr double orbit_radius_m = 0.3;
+constexpr double orbit_turn_s = 12.0;
+constexpr double cone_rad = 25.0 * std::numbers::pi / 180.0;
+constexpr double circle_s = 2.0;
+constexpr double cross_s = 4.0;
+constexpr double cross_half_m = 0.3;
+constexpr double tremor_m = 0.0003;
+
+Quaternion about_z(double angle) noexcept {
+  return {0.0, 0.0, std::sin(0.5 * angle), std::cos(0.5 * angle)};
+}
+Quaternion about_y(double angle) noexcept {
+  return {0.0, std::sin(0.5 * angle), 0.0, std::cos(0.5 * angle)};
+}
+Quaternion product(const Quaternion& a, const Quaternion& b) noexcept {
+  return {a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
+          a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
+          a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
+          a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]};
+}
+Vector rotated(const Quaternion& q, const Vector& v) noexcept {
+  const Quaternion r = product(product(q, {v[0], v[1], v[2], 0.0}), {-q[0], -q[1], -q[2], q[3]});
+  return {r[0], r[1], r[2]};
+}
+
+/// Returns the receiver's pose of a wrist's centre and a forearm's turn.
+ReceiverPose receiver_at(const Vector& wrist_m, const Quaternion& turn) noexcept {
+  const Vector offset = rotated(turn, receiver_to_wrist_m);
+  return {{wrist_m[0] - offset[0], wrist_m[1] - offset[1], wrist_m[2] - offset[2]}, turn};
+}
+
+/// The time after which a motion that begins from rest is at full speed.
+double eased(double time_s) noexcept {
+  constexpr double ease_s = 1.0;
+  return time_s < ease_s ? 0.5 * time_s * time_s / ease_s : time_s - 0.5 * ease_s;
+}
+
+double side_of(std::uint16_t station) noexcept {
+  return station % 2 == 1 ? -1.0 : 1.0;
+}
+
+ReceiverPose rest(std::uint16_t station, std::uint32_t seed, double time_s) noexcept {
+  const double phase = 0.7 * seed + 1.3 * station;
+  const double tremor = tremor_m * std::sin(tau * 8.3 * time_s + phase);
+  return receiver_at({0.4 + tremor, 0.2 * side_of(station), -0.1 + 0.6 * tremor}, {0, 0, 0, 1});
+}
+
+ReceiverPose orbit(std::uint16_t station, double time_s) noexcept {
+  const double angle = tau * eased(time_s) / orbit_turn_s;
+  const Quaternion turn = about_z(angle);
+  const Vector from_centre = rotated(turn, {0.0, orbit_radius_m * side_of(station), 0.0});
+  return receiver_at({0.5 + from_centre[0], from_centre[1], -0.1}, turn);
+}
+
+ReceiverPose table(std::uint16_t station, double time_s) noexcept {
+  const ForearmAngles forearm = forearm_angles(time_s);
+  return receiver_at({0.4, 0.2 * side_of(station), 0.05},
+                     product(about_z(forearm.yaw_rad), about_y(forearm.pitch_rad)));
+}
+
+ReceiverPose cross(std::uint16_t station, double time_s) noexcept {
+  const double x = cross_half_m * std::cos(tau * eased(time_s) / cross_s);
+  return receiver_at({x, 0.25 * side_of(station), -0.15}, {0, 0, 0, 1});
+}
+
+} // namespace
+
+Result<WristMotion> find_wrist_motion(std::string_view name) {
+  if (const auto motion = enumerator_named<WristMotion>(motion_names, name)) return *motion;
+  std::string names;
+  for (const std::string_view known : motion_names)
+    names.append(names.empty() ? "" : ", ").append(known);
+  return Error{Errc::usage,
+               "there is no motion \"" + std::string(name) + "\" of a tracker; there is " + names};
+}
+
+std::vector<std::string_view> wrist_motion_names() {
+  return {motion_names.begin(), motion_names.end()};
+}
+
+ForearmAngles forearm_angles(double time_s) noexcept {
+  const double phase = tau * time_s / circle_s;
+  return {cone_rad * std::cos(phase), cone_rad * std::sin(phase)};
+}
+
+ReceiverPose receiver_pose(WristMotion motion, std::uint16_t station, std::uint32_t seed,
+                           double time_s) noexcept {
+  switch (motion) {
+  case WristMotion::rest:
+    return rest(station, seed, time_s);
+  case WristMotion::orbit:
+    return orbit(station, time_s);
+  case WristMotion::table:
+    return table(station, time_s);
+  case WristMotion::cross:
+    return cross(station, time_s);
+  }
+  return {};
+}
+
+} // namespace nendo::driver
