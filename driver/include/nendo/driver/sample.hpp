@@ -1,6 +1,6 @@
 #pragma once
 // A sample of a glove: raw counts for up to 24 named sensor slots, with their times. `hand` turns
-// them into angles. This is the only header of `driver` that `hand` may include.
+// them into angles. `hand` may include only this header of `driver` and pose_sample.hpp.
 
 #include <array>
 #include <bit>
