@@ -109,6 +109,8 @@ inline constexpr const char* no_puppet = "There is no puppet here, and fingertip
 inline constexpr const char* no_part =
     "No hand has taken a part of this model yet; take the one that "
     "is meant, in mode parts (m).";
+inline constexpr const char* no_trackers = "No tracker moves a hand here; start with --left-wrist "
+                                           "or --right-wrist.";
 inline constexpr const char* no_recording = "There is no recording to mark; begin one with t.";
 inline constexpr const char* nothing_kept = "Nothing is kept in memory; start with --keep-last "
                                             "60s.";

@@ -143,6 +143,10 @@ inline bool has_parts(const Situation& now) {
 inline const char* without_puppet(const Situation& now) {
   return now.frame.function_count == 0 ? no_puppet : nullptr;
 }
+inline const char* without_trackers(const Situation& now) {
+  const auto& hands = now.frame.hands;
+  return hands[0].tracked || hands[1].tracked ? nullptr : no_trackers;
+}
 inline const char* without_part(const Situation& now) {
   return now.frame.parts.chosen == deform::no_index ? no_part : nullptr;
 }
@@ -326,6 +330,10 @@ inline constexpr std::array run_rows{
                       clutch<Side::right>),
               without_puppet),
           plays<Side::right>),
+    refused_if(run_row("recentre hands", keys("H"),
+                       "Moves the hands that trackers move back to where they began.",
+                       simple<flow::Recentre>),
+               without_trackers),
     run_row("save puppet", keys("S"), "Saves the puppet, or the masks.", simple<flow::SavePuppet>),
     setting_row("next mode", keys("m"),
                 "Chooses the next mode: type 1 (from rest), type 2 (accumulating), clay or parts.",

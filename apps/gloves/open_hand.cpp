@@ -41,6 +41,15 @@ Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side,
   return sculpting::hand_of(*std::move(glove), side, event_count, cli::note);
 }
 
+Result<void> open_wrists(std::span<OpenHand> hands, const std::array<std::string, 2>& specs) {
+  cli::install_stop_signals();
+  const std::array more{recording::replay_tracker_driver()};
+  auto opened = sculpting::open_wrists(hands, specs, more);
+  if (cli::stop_requested())
+    return Error{Errc::failed, "interrupted while a tracker was being identified"};
+  return opened;
+}
+
 Error same_hand(const OpenHand& one, const OpenHand& other) {
   const driver::GloveInfo& info = other.glove->info();
   const std::string both = one.glove->info().source + " and " + info.source + " are both " +
@@ -102,6 +111,16 @@ void add_calibration_options(cli::Command& command, CalibrationOptions& options,
                    "Learn while the glove is used: the wearer's ranges, or, with the --user or the "
                    "--calibration of a hand that was calibrated by poses, how far the glove slips; "
                    "with --user, nendo run keeps what was learned, and continues from it");
+}
+
+void add_wrist_options(cli::Command& command, std::array<std::string, 2>& wrists) {
+  command.add_option("--left-wrist", wrists[0], "TRACKER that moves the left hand");
+  command.add_option("--right-wrist", wrists[1], "TRACKER that moves the right hand");
+}
+
+std::vector<driver::TrackerDriver> tracker_drivers() {
+  const std::array more{recording::replay_tracker_driver()};
+  return driver::tracker_drivers(more);
 }
 
 Result<void> check(const CalibrationOptions& options) {

@@ -2,13 +2,16 @@
 // Opens gloves for the commands that use hands: a stop signal ends the opening, and notes go to
 // standard error.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <nendo/base/result.hpp>
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/driver/open_tracker.hpp>
 #include <nendo/hand/skeleton.hpp>
 #include <nendo/sculpting/find_wearer.hpp>
 #include <nendo/sculpting/open_hand.hpp>
@@ -27,6 +30,11 @@ void add_calibration_options(cli::Command& command, CalibrationOptions& options,
 /// Fails with usage if the options contradict each other. Call it before a glove is opened.
 Result<void> check(const CalibrationOptions& options);
 
+/// Adds the options --left-wrist and --right-wrist.
+void add_wrist_options(cli::Command& command, std::array<std::string, 2>& wrists);
+/// Returns the drivers of trackers: the library's, and recordings.
+std::vector<driver::TrackerDriver> tracker_drivers();
+
 struct HandLength {
   std::optional<double> length_mm; ///< nullopt: not given
 
@@ -41,6 +49,7 @@ using sculpting::begin_again;
 using sculpting::have_ended;
 using sculpting::OpenHand;
 using sculpting::start;
+using sculpting::stop;
 
 /// Returns what the program adds to the driver's gloves: recordings, and what simulated hands do to
 /// a model (motions::planned_motions()).
@@ -59,6 +68,10 @@ Result<std::unique_ptr<driver::Glove>> open_glove(const std::string& spec,
 Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = std::nullopt,
                            EventCount* event_count = nullptr,
                            motions::PlannedHand* planned = nullptr);
+
+/// Opens the trackers that move these hands' wrists, as sculpting::open_wrists() does, also from
+/// recordings. If a stop signal comes meanwhile, that is the error: failed, "interrupted".
+Result<void> open_wrists(std::span<OpenHand> hands, const std::array<std::string, 2>& specs);
 
 /// Returns the error that two gloves are of the same hand, with the name by which one of them would
 /// be the other hand's.

@@ -198,13 +198,20 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
   std::string gloves;
   for (const driver::GloveDriver& driver : driver::glove_drivers(gloves::glove_context()))
     gloves.append("\n  ").append(driver.grammar).append("\n      ").append(driver.summary);
+  std::string trackers;
+  for (const driver::TrackerDriver& driver : gloves::tracker_drivers())
+    trackers.append("\n  ").append(driver.grammar).append("\n      ").append(driver.summary);
   command.set_footer(
       "A GLOVE is one of" + gloves +
-      "\nWithout --left and --right every identified glove is used, or simulated hands.\nKeys "
+      "\nWithout --left and --right every identified glove is used, or simulated hands.\nA TRACKER "
+      "is one of" +
+      trackers +
+      "\nWithout --left-wrist and --right-wrist the hands stay where they are placed.\nKeys "
       "during the run, in the terminal, the window and a browser; some only in the last two:" +
       commands::key_list(commands::everywhere, "\n  key ", "\n      "));
   command.add_option("--left", run_options.left, "GLOVE on the left hand");
   command.add_option("--right", run_options.right, "GLOVE on the right hand");
+  gloves::add_wrist_options(command, run_options.wrists);
   command.add_option("MODEL,--mesh", options.models,
                      "OBJ, PLY, STL or glTF files to shape, side by side; without it, the shipped "
                      "Moai");

@@ -157,6 +157,7 @@ void nendo::app::add_stress(cli::Command& program) {
   command.add_option("--left", arguments.run.left,
                      "GLOVE on the left hand; without any, two simulated gloves");
   command.add_option("--right", arguments.run.right, "GLOVE on the right hand");
+  gloves::add_wrist_options(command, arguments.run.wrists);
   command.add_option("MODEL,--mesh", arguments.run.mesh,
                      "OBJ, PLY, STL or glTF file; without it, the shipped Moai");
   takes::add_up_option(command, arguments.up);

@@ -84,6 +84,8 @@ Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
       return fine.error();
   if (options.puppet) note_missing_switches(*options.puppet, *hands);
   RunHands opened{*std::move(hands), {}};
+  if (const auto wrists = gloves::open_wrists(opened.hands, options.wrists); !wrists)
+    return wrists.error();
   {
     const flow::InheritedPriority readers(flow::reader_priority(options.realtime.priority));
     if (readers.grant()) opened.grants.push_back(*readers.grant());

@@ -21,7 +21,10 @@ std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hand
   for (const auto& hand : hands) {
     inputs.push_back({hand.ring.get(), hand.side, hand.wearer, hand.first});
     inputs.back().filter = options.filter;
-    if (!options.over) inputs.back().wrist_path = hand.wrist_path; // a take's wrists are its own
+    if (!options.over) { // a take's wrists are its own
+      inputs.back().wrist_path = hand.wrist_path;
+      if (hand.wrist) inputs.back().wrist_source = {hand.wrist->ring.get(), hand.wrist->tracking};
+    }
     if (options.live)
       inputs.back().layer.emplace().joints = (*options.live)[flow::Placement::index_of(hand.side)];
   }

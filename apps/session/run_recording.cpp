@@ -74,9 +74,14 @@ std::string RunRecorder::next_name() {
 recording::Setup RunRecorder::setup_now() const {
   recording::Setup setup = begin_setup(hands_, options_.calibration.users());
   setup.hands = placed_.setup.inputs;
+  for (const auto& hand : hands_)
+    if (hand.wrist && !options_.over)
+      setup.trackers.push_back(
+          {hand.side, hand.wrist->station.station, hand.wrist->station.tracker->info()});
   if (options_.over) {
     const auto& gloves = options_.over->take.setup.gloves;
     setup.gloves.insert(setup.gloves.begin(), gloves.begin(), gloves.end());
+    setup.trackers = options_.over->take.setup.trackers;
   }
   setup.loop = recording::LoopSetup{cli::absolute_name(options_.mesh),
                                     recording::sum_of(model_.vertices),
@@ -84,6 +89,7 @@ recording::Setup RunRecorder::setup_now() const {
                                     placed_.setup.options,
                                     std::string(deform::simd_names().front()),
                                     {}};
+  setup.loop->is_tracked = !setup.trackers.empty();
   if (const auto& rig = placed_.setup.options.rig) {
     setup.loop->puppet.text = rig->puppet().text;
     setup.loop->puppet.starts = rig->starts();

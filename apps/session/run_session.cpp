@@ -166,8 +166,7 @@ public:
     run_loop(picture);
     for (auto& [side, feedback] : feedback_)
       feedback.put_out();
-    for (const auto& hand : hands_)
-      hand.glove->stop();
+    gloves::stop(hands_);
     if (const auto written = write_shape(options_.out, model_, options_.reading.up_axis());
         !written)
       return written.error();

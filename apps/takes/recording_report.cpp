@@ -65,6 +65,7 @@ void print_loop(const TakeSummary& summary) {
   }
   const std::pair<std::uint64_t, const char*> counts[]{
       {summary.wrist_moves, "wrist moves"},
+      {summary.poses, "poses of trackers"},
       {summary.settings_changes, "changes of settings"},
       {summary.model_changes, "changes of the model"},
       {summary.puppet_changes, "changes of the puppet"},
@@ -122,6 +123,7 @@ ordered_json loop_json(const TakeSummary& summary) {
     line["requests"][std::string(flow::name_of(request))] =
         summary.requests[static_cast<std::size_t>(request)];
   line["wrist_moves"] = summary.wrist_moves;
+  line["poses"] = summary.poses;
   line["settings_changes"] = summary.settings_changes;
   line["model_changes"] = summary.model_changes;
   line["puppet_changes"] = summary.puppet_changes;

@@ -143,7 +143,8 @@ void GloveHand::restart() noexcept {
 }
 
 HandInputs::HandInputs(std::vector<HandInput> inputs, const Placement& placement,
-                       const LoopSettings& settings) {
+                       const LoopSettings& settings)
+    : wrists_(inputs, placement) {
   assert(check_inputs(inputs));
   for (HandInput& input : inputs) {
     const bool closes = closes_pinches(input.filter, settings.mode);
@@ -160,8 +161,14 @@ HandInputs::HandInputs(std::vector<HandInput> inputs, const Placement& placement
 }
 
 void HandInputs::move_wrist(const WristMove& move) noexcept {
+  wrists_.recentre(move.side, move.pose());
   for (GloveHand& hand : hands_)
     if (hand.input.side == move.side) hand.T_stage_wrist = move.pose();
+}
+
+void HandInputs::follow_trackers() noexcept {
+  for (GloveHand& hand : hands_)
+    if (wrists_.has(hand.input.side)) hand.T_stage_wrist = wrists_.T_stage_wrist(hand.input.side);
 }
 
 void HandInputs::set_layer(const SetLayer& layer) noexcept {
@@ -184,6 +191,7 @@ void HandInputs::change_filters(const LoopSettings& settings) noexcept {
 }
 
 void HandInputs::restart(LoopState& state) noexcept {
+  wrists_.restart();
   for (std::size_t at = 0; at < hands_.size(); ++at) {
     GloveHand& hand = hands_[at];
     hand.restart();
@@ -200,6 +208,8 @@ hand::JointAngles HandInputs::angles_of(const GloveHand& lowest) const noexcept 
   for (const GloveHand& hand : hands_)
     if (hand.slot == lowest.slot && hand.input.layer)
       hand.input.layer->play_over(hand.angles, angles);
+  if (wrists_.is_on_hand(lowest.input.side))
+    angles[Angle::wrist_pitch] = angles[Angle::wrist_yaw] = 0.0;
   return angles;
 }
 
@@ -234,6 +244,7 @@ void HandInputs::show(const LoopStats& stats, Frame& frame) const noexcept {
     shown.pose = state.pose;
     shown.swapped = hand.latest.side != hand.input.first.side;
     shown.T_stage_wrist = hand.T_stage_wrist;
+    wrists_.show(hand.input.side, shown);
     shown.present = true;
     shown.silent = is_silent(hand.slot);
     shown.samples = stats.samples[hand.slot];
@@ -271,6 +282,7 @@ void HandInputs::count_samples(std::size_t number, std::size_t samples, HostTime
 }
 
 void HandInputs::record_latencies(HostTime done, LoopStats& stats) const noexcept {
+  wrists_.record_latencies(done, stats);
   for (const GloveHand& hand : hands_) {
     if (!hand.fresh) continue;
     stats.end_to_end.record(done - hand.latest.arrival);
@@ -282,8 +294,10 @@ void HandInputs::record_latencies(HostTime done, LoopStats& stats) const noexcep
 }
 
 void DeformLoop::Ticker::take_input(TickRecord& record) noexcept {
+  inputs_.wrists().begin_tick();
   take_commands(record.scheduled);
   take_script(record.scheduled);
+  take_poses(record.woke);
   take_samples(record);
 }
 
@@ -302,7 +316,9 @@ void DeformLoop::Ticker::take_script(HostTime scheduled) noexcept {
   const HostClock::duration since_first =
       stats_.ticks == 0 ? HostClock::duration::zero() : scheduled - first_due_;
   options_.script->play(since_first, [this](const InputLogEntry& entry) noexcept {
-    if (const auto* taken = std::get_if<TakenSample>(&entry)) {
+    if (const auto* taken = std::get_if<TakenPose>(&entry)) {
+      take(taken->side, taken->pose);
+    } else if (const auto* taken = std::get_if<TakenSample>(&entry)) {
       if (taken->hand >= inputs_.count()) return;
       take(taken->hand, taken->sample);
       const GloveHand& hand = inputs_[taken->hand];
@@ -311,6 +327,20 @@ void DeformLoop::Ticker::take_script(HostTime scheduled) noexcept {
       apply(*command);
     }
   });
+}
+
+/// The wrists move before the samples are taken, whose switches may grab the model.
+void DeformLoop::Ticker::take_poses(HostTime woke) noexcept {
+  inputs_.wrists().drain([this](Side side, const PoseSample& pose) noexcept {
+    if (options_.input_log != nullptr) options_.input_log->pose(side, pose);
+  });
+  if (inputs_.wrists().advance(woke, stats_)) core_.ask(Request::release);
+  inputs_.follow_trackers();
+}
+
+void DeformLoop::Ticker::take(Side side, const PoseSample& pose) noexcept {
+  if (options_.input_log != nullptr) options_.input_log->pose(side, pose);
+  inputs_.wrists().take(side, pose);
 }
 
 void DeformLoop::Ticker::take_samples(TickRecord& record) noexcept {
@@ -324,7 +354,7 @@ void DeformLoop::Ticker::take_samples(TickRecord& record) noexcept {
                                     });
     hand.fresh = count > 0;
     if (hand.fresh) {
-      if (hand.input.wrist_path)
+      if (hand.input.wrist_path && !inputs_.wrists().has(hand.input.side))
         apply(WristMove::to(hand.input.side,
                             hand.input.wrist_path->at(to_seconds(hand.latest.device_time))));
       const HostTime arrival = hand.latest.arrival;
@@ -356,6 +386,7 @@ void DeformLoop::Ticker::apply(const Command& command) noexcept {
   if (is_for_puppet(command) && core_.puppet() == nullptr) return;
   if (options_.input_log != nullptr) options_.input_log->command(command); // a Mark is only logged
   if (move != nullptr) return inputs_.move_wrist(*move);
+  if (std::holds_alternative<Recentre>(command)) return inputs_.wrists().recentre_all();
   if (const auto* layer = std::get_if<SetLayer>(&command)) return inputs_.set_layer(*layer);
   core_.apply(command, inputs_.pose());
 }

@@ -10,7 +10,8 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-void move_times(GloveSample& sample, HostClock::duration by) noexcept {
+template <class Sample>
+void move_times(Sample& sample, HostClock::duration by) noexcept {
   sample.arrival += by;
   sample.measured += by;
 }
@@ -62,6 +63,13 @@ TakenSample InputScript::now_played(TakenSample taken, HostClock::duration at) n
   stream.recorded = recorded;
   stream.begun = true;
   stream.last = sample;
+  return taken;
+}
+
+/// At the beginning of a round the hand may jump, as after a loss: its gate and filter see to that.
+TakenPose InputScript::now_played(TakenPose taken) const noexcept {
+  move_times(taken.pose, shift_ + offset_);
+  taken.pose.device_time += std::chrono::duration_cast<nanoseconds>(offset_);
   return taken;
 }
 

@@ -15,6 +15,8 @@
 #include <nendo/flow/wrist.hpp>
 #include <nendo/puppet/rig.hpp>
 
+#include "tracked_wrists.hpp"
+
 namespace nendo::flow {
 
 /// All inputs of a loop: gloves and the layers over them, whose samples become hand poses. Loop's
@@ -32,7 +34,10 @@ public:
   const GloveHand& operator[](std::size_t number) const noexcept { return hands_[number]; }
   GloveHand& operator[](std::size_t number) noexcept { return hands_[number]; }
 
+  TrackedWrists& wrists() noexcept { return wrists_; }
   void move_wrist(const WristMove& move) noexcept;
+  /// Puts the hands to where trackers have their wrists.
+  void follow_trackers() noexcept;
   void set_layer(const SetLayer& layer) noexcept;
   /// Advances the layers' fades to that deadline. They go by the deadlines, so that a replay does
   /// the same.
@@ -57,6 +62,7 @@ private:
   hand::JointAngles angles_of(const GloveHand& lowest) const noexcept;
   bool is_silent(std::size_t slot) const noexcept;
 
+  TrackedWrists wrists_;
   std::vector<GloveHand> hands_;
   std::array<puppet::HandState, 2> states_; ///< in the order of Side
   HostTime last_due_{};                     ///< the previous tick's deadline
@@ -80,8 +86,10 @@ private:
   void take_input(TickRecord& record) noexcept;
   void take_commands(HostTime scheduled) noexcept;
   void take_script(HostTime scheduled) noexcept;
+  void take_poses(HostTime woke) noexcept;
   void take_samples(TickRecord& record) noexcept;
   void take(std::uint8_t number, const GloveSample& sample) noexcept;
+  void take(Side side, const PoseSample& pose) noexcept;
   void apply(const Command& command) noexcept;
   void update_switches() noexcept;
   // In deform_loop.cpp:

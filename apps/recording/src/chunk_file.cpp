@@ -121,7 +121,7 @@ Result<void> ChunkReader::check_file_header() {
   const std::string has = "has format " + numbers(major, minor) + ", made by ";
   const std::string reads = " nendo; this one reads " + numbers(format_major, format_minor);
   if (major > format_major) return bad(has + "a newer" + reads + ", so update it");
-  if (major < format_major || minor < format_minor)
+  if (major < format_major || minor < first_format_minor)
     return bad(has + "an unreleased" + reads + " and newer ones, so record it again");
   at_ = good_end_ = file_header_bytes;
   return {};

@@ -60,6 +60,7 @@ public:
     writer_->u8(static_cast<std::uint8_t>(value));
   }
   void constant(std::uint8_t value) { writer_->u8(value); }
+  void flag_constant(std::uint8_t off, std::uint8_t on, bool flag) { writer_->u8(flag ? on : off); }
   void reserved() { writer_->u16_le(0); }
   void bits(std::uint32_t value, std::size_t /*count*/) { writer_->u32_le(value); }
   void text(std::string_view value) { writer_->text(value); }
@@ -147,6 +148,11 @@ public:
     value = static_cast<Enum>(read);
   }
   void constant(std::uint8_t value) { require(reader_->u8() == value); }
+  void flag_constant(std::uint8_t off, std::uint8_t on, bool& flag) {
+    const std::uint8_t read = reader_->u8();
+    require(read == off || read == on);
+    flag = read == on;
+  }
   void reserved() { reader_->u16_le(); }
   void bits(std::uint32_t& value, std::size_t count) {
     value = reader_->u32_le();

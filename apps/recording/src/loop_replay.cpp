@@ -73,6 +73,7 @@ private:
     ++samples_[recorded.glove];
     put(flow::TakenSample{recorded.glove, recorded.sample});
   }
+  void add_one(const RecordedPose& recorded) { put(flow::TakenPose{recorded.pose, recorded.side}); }
   // Recorders repeat what is in effect, also while an undo waits for something else.
   void add_one(const flow::LoopSettings& settings) {
     if (std::exchange(settings_, settings) == settings) return;
@@ -122,6 +123,10 @@ Result<flow::LoopOptions> loop_options_of(const Setup& setup, const deform::Mesh
         Errc::bad_input,
         "the description of a hand or of a layer is missing, damaged, or not of a hand; record "
         "it again, or cut nothing out of it"};
+  if (setup.loop->is_tracked && setup.trackers.empty())
+    return Error{
+        Errc::bad_input,
+        "the description of the trackers that moved the hands is damaged; record it again"};
   flow::LoopOptions options = setup.loop->options;
   if (const auto fine = set_rig(*setup.loop, model, options); !fine) return fine.error();
   const Eigen::Index points = flow::supported_points(
@@ -145,6 +150,10 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
   for (auto& input : inputs) {
     replay->rings_.push_back(std::make_unique<SampleRing>(ring_size));
     input.ring = replay->rings_.back().get();
+    auto& poses = replay->poses_[flow::Placement::index_of(input.side)];
+    if (!input.wrist_source || poses != nullptr) continue; // the first input of a side
+    poses = std::make_unique<PoseRing>(ring_size);
+    input.wrist_source->ring = poses.get();
   }
   options.commands = &replay->commands_;
   options.undo_max_bytes = std::min(options.undo_max_bytes, deform::half_of_memory());
@@ -160,6 +169,11 @@ Result<std::unique_ptr<LoopReplay>> LoopReplay::make(const Setup& setup,
 
 void LoopReplay::take(const RecordedSample& sample) noexcept {
   exact_ = sample.glove < rings_.size() && rings_[sample.glove]->try_push(sample.sample) && exact_;
+}
+
+void LoopReplay::take(const RecordedPose& recorded) noexcept {
+  const auto& poses = poses_[flow::Placement::index_of(recorded.side)];
+  exact_ = poses != nullptr && poses->try_push(recorded.pose) && exact_;
 }
 
 /// Makes that version, or goes back to it. Returns false if the loop cannot have it, as after a
@@ -202,6 +216,8 @@ bool LoopReplay::follow(const PuppetChange& change) {
 bool LoopReplay::feed(const Entry& entry) noexcept {
   if (const auto* sample = std::get_if<RecordedSample>(&entry)) {
     take(*sample);
+  } else if (const auto* pose = std::get_if<RecordedPose>(&entry)) {
+    take(*pose);
   } else if (const auto* settings = std::get_if<flow::LoopSettings>(&entry)) {
     exact_ = loop_->changes().change_settings(*settings) && exact_;
   } else if (std::holds_alternative<flow::HoldStill>(entry)) {

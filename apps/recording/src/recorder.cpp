@@ -31,11 +31,14 @@ constexpr std::chrono::milliseconds drain_time{20};
 /// say, and as sending at least 250 samples per second.
 std::size_t memory_for(const Setup& setup, HostClock::duration span) {
   constexpr double sample_entry_bytes = 88.0;
+  constexpr double pose_entry_bytes = 95.0;
   constexpr double tick_entry_bytes = 26.0;
   constexpr double min_rate_hz = 250.0;
   double bytes_s = 1000.0;
   for (const auto& glove : setup.gloves)
     bytes_s += sample_entry_bytes * std::max(2.0 * glove.rate_hz, min_rate_hz);
+  for (const auto& tracker : setup.trackers)
+    bytes_s += pose_entry_bytes * std::max(2.0 * tracker.info.rate_hz, min_rate_hz);
   if (setup.loop) bytes_s += tick_entry_bytes * setup.loop->options.rate_hz;
   constexpr double max_bytes = 1e9;
   return static_cast<std::size_t>(std::min(max_bytes, bytes_s * (to_seconds(span) + 2.0)));
@@ -113,6 +116,7 @@ private:
     if (options_.keep_on_switch && edge.turned_on(taken.sample.wrist_switch, taken.sample.arrival))
       save_last_minute();
   }
+  void add(const flow::TakenPose& taken) { put({RecordedPose{taken.side, taken.pose}}); }
   void add(const flow::Command& command) {
     std::visit([this](const auto& one) { add_one(one); }, command);
   }

@@ -9,7 +9,6 @@
 namespace nendo::recording {
 namespace {
 
-constexpr std::size_t max_facts = 256;
 constexpr double max_rate_hz = 1e6;
 
 constexpr unsigned device_time_flag = 1U << 0U;
@@ -71,12 +70,25 @@ void glove_fields(auto& fields, auto& glove) {
   if constexpr (reads)
     for (std::size_t at = 0; at < flags.size(); ++at)
       *flags[at] = (unsigned{byte} >> at & 1U) != 0;
-  const std::size_t facts = fields.count(std::min(info.facts.size(), max_facts), max_facts);
-  if constexpr (reads) info.facts.resize(facts);
-  for (std::size_t at = 0; at < facts; ++at) {
-    fields.line(info.facts[at].name);
-    fields.line(info.facts[at].value);
-  }
+  fact_fields(fields, info.facts);
+}
+
+void pose_fields(auto& fields, auto& recorded) {
+  auto& pose = recorded.pose;
+  fields.one_of(recorded.side, Side::right);
+  fields.time(pose.arrival);
+  fields.time(pose.measured);
+  fields.time_span(pose.device_time);
+  fields.u64(pose.sequence);
+  fields.u16(pose.station);
+  for (auto& coordinate : pose.position_m)
+    fields.number(coordinate);
+  for (auto& part : pose.turn_xyzw)
+    fields.number(part);
+  auto error = static_cast<std::uint8_t>(pose.error);
+  fields.u8(error);
+  if constexpr (std::remove_cvref_t<decltype(fields)>::reads) pose.error = static_cast<char>(error);
+  fields.flag(pose.has_device_time);
 }
 
 } // namespace
@@ -96,6 +108,19 @@ void sample_body(FieldWriter& fields, const RecordedSample& recorded) {
 
 void sample_body(FieldReader& fields, RecordedSample& recorded) {
   sample_fields(fields, recorded);
+}
+
+void pose_body(FieldWriter& fields, const RecordedPose& recorded) {
+  pose_fields(fields, recorded);
+}
+
+void pose_body(FieldReader& fields, RecordedPose& recorded) {
+  pose_fields(fields, recorded);
+}
+
+std::optional<RecordedPose> pose_of(const LogEntry& record) noexcept {
+  if (!record.is(EntryKind::pose)) return std::nullopt;
+  return read_value<RecordedPose>(record.body, pose_fields<FieldReader, RecordedPose>);
 }
 
 std::optional<RecordedSample> sample_of(const LogEntry& record) noexcept {

@@ -87,6 +87,14 @@ std::vector<std::byte> setup_bytes(const Setup& setup, std::uint32_t& chunks) {
       put_hand(writer, static_cast<std::uint8_t>(at), setup.hands[at]);
     });
   }
+  for (const RecordedTracker& tracker : setup.trackers) {
+    const auto hand = std::ranges::find_if(setup.hands, [&](const flow::HandInput& input) {
+      return input.side == tracker.side && input.wrist_source;
+    });
+    if (hand == setup.hands.end()) continue;
+    append(tracker_chunk,
+           [&](ByteWriter writer) { put_tracker(writer, tracker, hand->wrist_source->tracking); });
+  }
   if (!setup.loop) return bytes;
   append(loop_chunk, [&](ByteWriter writer) { put_loop(writer, *setup.loop); });
   if (!setup.loop->puppet.text.empty())
@@ -109,6 +117,7 @@ bool read_setup_chunk(ChunkType type, std::span<const std::byte> payload, Setup&
   ByteReader reader(payload);
   if (type == head_chunk) return read_head(reader, setup);
   if (type == hand_chunk) return read_hand(reader, setup.hands);
+  if (type == tracker_chunk) return read_tracker(reader, setup);
   if (type == loop_chunk) return read_loop(reader, setup.loop);
   if (type == puppet_chunk) return read_puppet(reader, setup.loop);
   if (type == origin_chunk) return read_origin(payload, setup.loop);
@@ -146,6 +155,8 @@ std::string reason_of(ChunkType type, const Setup& setup) {
   if (type == hand_chunk)
     return "a hand's size, calibration or filter has a number that no hand has; calibrate again, "
            "or use --calibration none";
+  if (type == tracker_chunk)
+    return "a tracker's mount has a number that no mount has; calibrate it again";
   if (type == loop_chunk && setup.loop) return reason_of_loop(*setup.loop);
   if (type == puppet_chunk && setup.loop && setup.loop->puppet.text.size() > max_text_bytes)
     return "its puppet is longer than 1 MiB; take functions or masks out of it";

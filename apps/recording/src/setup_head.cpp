@@ -133,7 +133,75 @@ void hand_fields(auto& fields, auto& hand, auto& own, auto& other, std::uint8_t 
   if (fields.has_end(has_stuck(wearer))) stuck_fields(fields, wearer);
 }
 
+constexpr double farthest_mount_m = 10.0;
+
+void turn_fields(auto& fields, auto& turn) {
+  for (auto& part : turn.coeffs())
+    fields.number(part, -1.01, 1.01);
+}
+
+void mount_fields(auto& fields, auto& mount) {
+  turn_fields(fields, mount.stage_from_tracker);
+  for (Eigen::Index row = 0; row < 3; ++row)
+    for (Eigen::Index column = 0; column < 4; ++column)
+      fields.number(mount.T_station_wrist(row, column), -farthest_mount_m, farthest_mount_m);
+  fields.flag(mount.on_hand);
+  bounded(fields, mount.late_s);
+}
+
+void tracking_fields(auto& fields, auto& options) {
+  constexpr std::chrono::nanoseconds max_pause = std::chrono::hours(1);
+  mount_fields(fields, options.mount);
+  bounded(fields, options.gate.max_distance_m);
+  fields.one_of(options.filter.kind, hand::FilterKind::one_euro);
+  bounded(fields, options.filter.min_cutoff_hz);
+  bounded(fields, options.filter.beta_hz_per_m_s);
+  bounded(fields, options.filter.beta_hz_per_rad_s);
+  bounded(fields, options.filter.derivative_cutoff_hz);
+  bounded(fields, options.movement_scale);
+  std::chrono::nanoseconds lost_after = options.lost_after;
+  fields.time_span(lost_after);
+  fields.require(lost_after >= std::chrono::nanoseconds::zero() && lost_after <= max_pause);
+  if constexpr (std::remove_cvref_t<decltype(fields)>::reads) options.lost_after = lost_after;
+}
+
+void tracker_fields(auto& fields, auto& tracker, auto& options) {
+  constexpr double max_rate_hz = 1e6;
+  auto& info = tracker.info;
+  fields.one_of(tracker.side, Side::right);
+  fields.u16(tracker.station);
+  fields.line(info.source);
+  fields.line(info.model);
+  fields.number(info.rate_hz, 0.0, max_rate_hz);
+  for (auto& part : info.stage_from_tracker_xyzw)
+    fields.number(part, -1.01, 1.01);
+  fields.flag(info.is_filtered);
+  fact_fields(fields, info.facts);
+  tracking_fields(fields, options);
+}
+
 } // namespace
+
+void put_tracker(ByteWriter& writer, const RecordedTracker& tracker,
+                 const hand::TrackingOptions& options) {
+  FieldWriter fields(writer);
+  tracker_fields(fields, tracker, options);
+}
+
+bool read_tracker(ByteReader& reader, Setup& setup) {
+  FieldReader fields(reader);
+  RecordedTracker tracker;
+  hand::TrackingOptions options;
+  tracker_fields(fields, tracker, options);
+  if (!fields.fine()) return false;
+  const auto hand = std::ranges::find_if(
+      setup.hands, [&](const flow::HandInput& input) { return input.side == tracker.side; });
+  if (hand == setup.hands.end() || hand->wrist_source) return false;
+  hand->wrist_source = flow::WristSource{nullptr, options};
+  tracker.info.stations = {tracker.station};
+  setup.trackers.push_back(std::move(tracker));
+  return true;
+}
 
 void put_head(ByteWriter& writer, const Setup& setup) {
   FieldWriter fields(writer);

@@ -30,6 +30,16 @@ struct Format<RecordedSample> : FormatOf<EntryKind::sample, sample_bytes> {
 };
 
 template <>
+struct Format<RecordedPose> : FormatOf<EntryKind::pose, pose_bytes> {
+  static void put(auto& fields, auto& recorded) { pose_body(fields, recorded); }
+};
+
+template <>
+struct Format<flow::Recentre> : FormatOf<EntryKind::recentre, 0> {
+  static void put(auto& /*fields*/, auto& /*recentre*/) {}
+};
+
+template <>
 struct Format<flow::LoopSettings> : FormatOf<EntryKind::settings, settings_bytes> {
   static void put(auto& fields, auto& settings) { settings_body(fields, settings); }
 };

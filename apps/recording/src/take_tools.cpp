@@ -276,6 +276,8 @@ public:
   }
   void operator()(flow::Request request) { ++summary_.requests[static_cast<std::size_t>(request)]; }
   void operator()(const flow::WristMove&) { ++summary_.wrist_moves; }
+  void operator()(const RecordedPose&) { ++summary_.poses; }
+  void operator()(const flow::Recentre&) {}
   void operator()(const flow::LoopSettings& settings) {
     // The recorder repeats them.
     if (std::exchange(settings_, settings) != settings) ++summary_.settings_changes;

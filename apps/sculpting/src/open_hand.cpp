@@ -82,25 +82,90 @@ Result<std::vector<OpenHand>> open_found(std::span<const Side> sides, const std:
   return hands;
 }
 
+hand::TrackingOptions usual_tracking(const driver::TrackerInfo& info) noexcept {
+  hand::TrackingOptions tracking;
+  const auto& turn = info.stage_from_tracker_xyzw;
+  tracking.mount = hand::usual_mount(Eigen::Quaterniond(turn.data()).normalized());
+  const bool is_noisy = info.kind == driver::SourceKind::device && !info.is_filtered;
+  tracking.filter.kind = is_noisy ? hand::FilterKind::one_euro : hand::FilterKind::off;
+  return tracking;
+}
+
+Result<void> open_wrists(std::span<OpenHand> hands, const std::array<std::string, 2>& specs,
+                         std::span<const driver::TrackerDriver> more) {
+  std::vector<std::string> wanted;
+  std::vector<OpenHand*> moved;
+  for (const Side side : {Side::left, Side::right}) {
+    const std::string& spec = specs[flow::Placement::index_of(side)];
+    if (spec.empty()) continue;
+    const auto hand =
+        std::ranges::find_if(hands, [side](const OpenHand& one) { return one.side == side; });
+    if (hand == hands.end())
+      return Error{Errc::usage, "--" + std::string(name_of(side)) + "-wrist " + spec +
+                                    ": there is no " + std::string(name_of(side)) +
+                                    " hand; name its glove with --" + std::string(name_of(side))};
+    wanted.push_back(spec);
+    moved.push_back(&*hand);
+  }
+  auto stations = driver::open_trackers(wanted, more);
+  if (!stations) return stations.error();
+  if (stations->size() == 2 && (*stations)[0].tracker == (*stations)[1].tracker &&
+      (*stations)[0].station == (*stations)[1].station)
+    return Error{Errc::usage, "--left-wrist and --right-wrist: both are " + wanted[0] +
+                                  "; give each hand a station of its own, e.g. with station="};
+  for (std::size_t at = 0; at < moved.size(); ++at) {
+    const driver::TrackerInfo& info = (*stations)[at].tracker->info();
+    moved[at]->wrist =
+        OpenWrist{std::make_unique<PoseRing>(1024), (*stations)[at], usual_tracking(info)};
+  }
+  return {};
+}
+
+namespace {
+
+Result<void> start_wrists(std::span<const OpenHand> hands) {
+  std::vector<driver::TrackerStation> stations;
+  std::vector<PoseRing*> rings;
+  for (const OpenHand& hand : hands) {
+    if (!hand.wrist) continue;
+    stations.push_back(hand.wrist->station);
+    rings.push_back(hand.wrist->ring.get());
+  }
+  return driver::start_trackers(stations, rings);
+}
+
+} // namespace
+
 Result<void> start(std::span<OpenHand> hands) {
   for (OpenHand& hand : hands) {
     if (auto started = hand.glove->start(*hand.ring); !started) return started;
   }
-  return {};
+  return start_wrists(hands);
+}
+
+void stop(std::span<OpenHand> hands) noexcept {
+  for (OpenHand& hand : hands) {
+    hand.glove->stop();
+    if (hand.wrist) hand.wrist->station.tracker->stop();
+  }
 }
 
 Result<void> begin_again(std::span<OpenHand> hands) {
   const auto is_worn = [](const OpenHand& hand) {
     return hand.glove->info().kind == driver::SourceKind::device;
   };
-  for (OpenHand& hand : hands)
-    if (!is_worn(hand)) hand.glove->stop();
+  // A tracker may move both hands, so it is stopped before its rings are emptied.
   for (OpenHand& hand : hands) {
+    if (!is_worn(hand)) hand.glove->stop();
+    if (hand.wrist) hand.wrist->station.tracker->stop();
+  }
+  for (OpenHand& hand : hands) {
+    if (hand.wrist) hand.wrist->ring->drain([](const PoseSample&) noexcept {});
     if (is_worn(hand)) continue;
     hand.ring->drain([](const GloveSample&) noexcept {});
     if (auto started = hand.glove->start(*hand.ring); !started) return started;
   }
-  return {};
+  return start_wrists(hands);
 }
 
 bool have_ended(std::span<const OpenHand> hands) noexcept {

@@ -21,9 +21,9 @@ struct PoseSample {
   /// The device's own clock, from its own zero; if has_device_time.
   std::chrono::nanoseconds device_time{};
   std::uint64_t sequence = 0; ///< number of the record; also counts records that the ring refused
-  std::uint16_t station = 0;  ///< the station's number, as the device counts
   std::array<double, 3> position_m{};
   std::array<double, 4> turn_xyzw{0, 0, 0, 1}; ///< a quaternion: station to tracker
+  std::uint16_t station = 0;                   ///< the station's number, as the device counts
   char error = ' ';                            ///< the device's error letter; blank: none
   bool has_device_time = false;
   bool is_replayed = false; ///< `arrival` and `measured` are times of the replay

@@ -145,6 +145,9 @@ struct EditPart {
   std::uint32_t part = deform::no_index; ///< an index in the newest model; no_index: the default
   friend bool operator==(const EditPart&, const EditPart&) = default;
 };
+/// Puts the wrists that trackers move back to where the hands were placed, with their headings
+/// (hand::WristTracking::recentre()).
+struct Recentre : NoData {};
 /// Ends the run, which then writes its shape.
 struct EndRun : NoData {};
 
@@ -184,14 +187,14 @@ struct ChangePuppet {
   friend bool operator==(const ChangePuppet&, const ChangePuppet&) = default;
 };
 
-/// A loop executes Request, WristMove, SetLayer, DrawWire and puppet commands at the beginning of
-/// its next tick, and logs a Mark. The code that runs the loop executes all others. HoldStill,
-/// ChangeModel and ChangePuppet are only for the log.
+/// A loop executes Request, WristMove, Recentre, SetLayer, DrawWire and puppet commands at the
+/// beginning of its next tick, and logs a Mark. The code that runs the loop executes all others.
+/// HoldStill, ChangeModel and ChangePuppet are only for the log.
 using Command =
     std::variant<Request, WristMove, ChangeSettings, SetRecording, SaveShape, SaveRecording, EndRun,
                  Subdivide, HoldStill, ChangeModel, Mark, SetClutch, SetRole, SetSymmetry, SetLayer,
                  Punch, ChangePuppet, SavePuppet, SetMask, Refine, DrawWire, JoinParts, EditPart,
-                 ChangeTopology>;
+                 ChangeTopology, Recentre>;
 static_assert(std::is_trivially_copyable_v<Command>);
 
 /// Returns the change of the model that the command requests, without a number; nothing if it
@@ -232,7 +235,8 @@ constexpr bool is_for_puppet(const Command& command) noexcept {
 constexpr bool is_for_loop(const Command& command) noexcept {
   return std::holds_alternative<Request>(command) || std::holds_alternative<WristMove>(command) ||
          std::holds_alternative<Mark>(command) || std::holds_alternative<SetLayer>(command) ||
-         std::holds_alternative<DrawWire>(command) || is_for_puppet(command);
+         std::holds_alternative<DrawWire>(command) || std::holds_alternative<Recentre>(command) ||
+         is_for_puppet(command);
 }
 
 /// The settings that a client shows: the requested ones until the loop has had time to take them,

@@ -27,6 +27,8 @@ namespace nendo::flow {
 struct HandFrame {
   bool present = false; ///< a glove drives this hand
   bool silent = false; ///< its glove sent nothing for LoopOptions::silent_after; the pose is frozen
+  bool tracked = false; ///< a tracker moves its wrist
+  bool lost = false;    ///< the tracker delivers no good pose of the wrist, which is frozen
   bool swapped = false; ///< its glove's side differs from that of HandInput::first
   hand::HandPose pose;  ///< on the stage, metres
   /// The hand's pose on the stage. Measured wrist joints, if any, rotate the hand relative to it.

@@ -18,6 +18,7 @@
 #include <nendo/base/result.hpp>
 #include <nendo/base/side.hpp>
 #include <nendo/base/units.hpp>
+#include <nendo/driver/pose_sample.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/flow/placement.hpp>
@@ -27,6 +28,7 @@
 #include <nendo/hand/sensor_gate.hpp>
 #include <nendo/hand/skeleton.hpp>
 #include <nendo/hand/wearer.hpp>
+#include <nendo/hand/wrist_tracking.hpp>
 
 namespace nendo::flow {
 
@@ -77,6 +79,13 @@ struct NENDO_API Layer {
   void play_over(const hand::JointAngles& own, hand::JointAngles& angles) const noexcept;
 };
 
+/// The station of a tracker that moves a hand's wrist. Only the loop's thread drains `ring`, which
+/// must outlive the loop; null: the poses are in LoopOptions::script.
+struct WristSource {
+  PoseRing* ring = nullptr;
+  hand::TrackingOptions tracking{};
+};
+
 /// An input of the loop: a hand, or a layer over it. Only the loop's thread drains `ring`, which
 /// must outlive the loop; null: the input is in LoopOptions::script.
 struct HandInput {
@@ -92,6 +101,9 @@ struct HandInput {
   /// The wrist path of a simulated hand, over its glove's time. The loop moves the wrist at each
   /// sample by a WristMove, which a recording keeps.
   std::shared_ptr<const WristPath> wrist_path{};
+  /// Moves the hand; the first input of a side that has one determines it. Nothing: the wrist stays
+  /// where it was placed, and WristMove moves it.
+  std::optional<WristSource> wrist_source{};
 
   /// Returns the skeleton for samples from a glove of that side. It always has the side `side`.
   hand::HandSkeleton skeleton(Side glove) const {

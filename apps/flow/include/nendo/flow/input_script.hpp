@@ -13,6 +13,7 @@
 
 #include <nendo/base/spsc_ring.hpp>
 #include <nendo/base/units.hpp>
+#include <nendo/driver/pose_sample.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/flow/command.hpp>
 
@@ -26,6 +27,12 @@ struct TakenSample {
   GloveSample sample;
 };
 
+/// A pose that moves the wrist of a hand.
+struct TakenPose {
+  PoseSample pose;
+  Side side = Side::right; ///< the hand's side on the stage
+};
+
 /// A tick. The entries between the previous tick and this one are the input of this tick.
 struct LoggedTick {
   std::uint64_t number = 0; ///< Pacer::Due::number
@@ -34,7 +41,7 @@ struct LoggedTick {
   std::uint64_t lost = 0; ///< entries that the full input log has refused so far
 };
 
-using InputLogEntry = std::variant<TakenSample, Command, LoggedTick>;
+using InputLogEntry = std::variant<TakenSample, Command, LoggedTick, TakenPose>;
 
 /// Passes the loop's input to a recorder through a ring. A full ring refuses entries; the next
 /// logged tick has their number. The loop's side is wait-free.
@@ -47,6 +54,7 @@ public:
   void sample(std::uint8_t hand, const GloveSample& sample) noexcept {
     ring_.try_push(TakenSample{hand, sample}); // the ring counts what it refuses: lost()
   }
+  void pose(Side side, const PoseSample& pose) noexcept { ring_.try_push(TakenPose{pose, side}); }
   void command(const Command& command) noexcept { ring_.try_push(command); }
   void tick(std::uint64_t number, HostTime scheduled, HostTime woke) noexcept {
     ring_.try_push(LoggedTick{number, scheduled, woke, ring_.counters().refused});
@@ -69,7 +77,7 @@ inline constexpr std::size_t max_inputs = 16;
 
 class NENDO_API InputScript {
 public:
-  /// An input of the loop: a TakenSample or a Command, never a tick.
+  /// An input of the loop: a TakenSample, TakenPose or Command, never a tick.
   struct Event {
     HostClock::duration at{}; ///< the deadline of its tick, since the first tick
     InputLogEntry entry;
@@ -114,9 +122,12 @@ public:
     const std::size_t first = next_;
     for (; next_ < events_.size() && events_[next_].at < end; ++next_)
       if (const auto* command = std::get_if<Command>(&events_[next_].entry)) give(*command, take);
-    for (std::size_t at = first; at < next_; ++at)
+    for (std::size_t at = first; at < next_; ++at) {
+      if (const auto* pose = std::get_if<TakenPose>(&events_[at].entry))
+        take(InputLogEntry(now_played(*pose)));
       if (const auto* taken = std::get_if<TakenSample>(&events_[at].entry))
         take(InputLogEntry(now_played(*taken, events_[at].at)));
+    }
     if (wraps) begin_again();
     if (!round_ && next_ == events_.size() && now >= length_)
       ended_.store(true, std::memory_order_release);
@@ -138,6 +149,7 @@ private:
       for_others_.try_push(command); // the ring counts what it refuses
   }
   TakenSample now_played(TakenSample taken, HostClock::duration at) noexcept;
+  TakenPose now_played(TakenPose taken) const noexcept;
   void begin_again() noexcept;
 
   /// The state of one input.

@@ -9,6 +9,7 @@
 #include <nendo/flow/clay_hands.hpp>
 #include <nendo/flow/histogram.hpp>
 #include <nendo/hand/range_adaptation.hpp>
+#include <nendo/hand/wrist_tracking.hpp>
 
 namespace nendo::flow {
 
@@ -23,6 +24,14 @@ struct SampleRate {
   double per_s() const noexcept {
     return last > first ? static_cast<double>(samples) / to_seconds(last - first) : 0.0;
   }
+};
+
+/// The counts of a tracked wrist.
+struct WristStats {
+  bool tracked = false;
+  bool is_lost = false;
+  hand::TrackingCounts counts{};
+  std::uint64_t releases = 0; ///< returns so far away that the hand released the model first
 };
 
 /// Loop's thread; other threads only after run() has returned.
@@ -61,6 +70,9 @@ struct LoopStats {
   Histogram wake_latency;             ///< from TickRecord::scheduled to the wake-up
   Histogram work;                     ///< from the wake-up to the published frame
   Histogram end_to_end; ///< from a sample's last byte to the published frame that shows it
+  std::array<WristStats, 2> wrists{};
+  Histogram pose_to_frame; ///< from a pose's last byte to the published frame that shows it
+  Histogram pose_age;      ///< from the measurement of that pose
   /// The hand::FilterLatency of each hand at each tick with samples; not part of end_to_end.
   Histogram filter_moving;
   Histogram filter_worst;

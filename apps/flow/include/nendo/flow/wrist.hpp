@@ -15,8 +15,8 @@
 
 namespace nendo::flow {
 
-/// Sets a wrist's pose, which the hand keeps until the next move, for example by a mouse or a
-/// tracker.
+/// Sets a wrist's pose, which the hand keeps until the next move, for example by a mouse. A wrist
+/// that a tracker moves goes to this position and heading, and follows the tracker from there.
 struct NENDO_API WristMove {
   Side side = Side::right;                     ///< the hand's side on the stage
   std::array<double, 3> position_m{};          ///< on the stage

@@ -26,10 +26,11 @@ constexpr ChunkType chunk_type(const char (&letters)[5]) noexcept {
   return type;
 }
 
-// The first released format. Older versions cannot be read, nor can newer major versions; newer
-// minor versions only add data that a reader may skip.
+// The format of new files. Minor versions before the first released one cannot be read, nor can
+// newer major versions; newer minor versions only add data that a reader may skip.
 inline constexpr std::uint16_t format_major = 1;
-inline constexpr std::uint16_t format_minor = 13;
+inline constexpr std::uint16_t format_minor = 14;
+inline constexpr std::uint16_t first_format_minor = 13;
 inline constexpr std::size_t file_header_bytes = 16;
 inline constexpr std::size_t chunk_header_bytes = 20;
 inline constexpr std::size_t chunk_checksum_bytes = 4; ///< after the payload

@@ -2,6 +2,7 @@
 // Feeds a loop from a recording, tick by tick and without a clock. The same recording gives the
 // same shape, bit for bit, on the same build and the same kind of processor.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -41,10 +42,12 @@ public:
 private:
   LoopReplay() = default;
   void take(const RecordedSample& sample) noexcept;
+  void take(const RecordedPose& recorded) noexcept;
   bool follow(const flow::ChangeModel& change);
   bool follow(const PuppetChange& change);
 
   std::vector<std::unique_ptr<SampleRing>> rings_;
+  std::array<std::unique_ptr<PoseRing>, 2> poses_; ///< in the order of Side
   flow::CommandRing commands_{2048};
   std::unique_ptr<flow::DeformLoop> loop_;
   std::map<std::uint32_t, std::uint32_t>

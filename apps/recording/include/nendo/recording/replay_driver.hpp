@@ -1,8 +1,9 @@
 #pragma once
-// Gloves that replay the samples of a recording with their original timing. Programs use them like
-// any other glove.
+// Gloves and trackers that replay the samples of a recording with their original timing. Programs
+// use them like any other glove.
 
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/driver/open_tracker.hpp>
 
 namespace nendo::recording {
 
@@ -16,5 +17,11 @@ namespace nendo::recording {
 /// table without times. Errors: usage (options), bad_input (no recording, no samples), no_device
 /// (not of that hand).
 NENDO_API driver::GloveDriver replay_driver() noexcept;
+
+/// Returns the driver of `replay:FILE?hand=left|right&speed=X&loop=yes|no&end=stop|hold`, a tracker
+/// with the recorded poses of one hand or both, for driver::open_trackers(). `hand` may be omitted
+/// if one hand was tracked. Times and options are as those of replay_driver(). Errors: usage,
+/// bad_input (no recording, no poses), no_device (not of that hand).
+NENDO_API driver::TrackerDriver replay_tracker_driver() noexcept;
 
 } // namespace nendo::recording

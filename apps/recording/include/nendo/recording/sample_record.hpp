@@ -9,12 +9,14 @@
 #include <nendo/base/byte_reader.hpp>
 #include <nendo/base/byte_writer.hpp>
 #include <nendo/driver/glove.hpp>
+#include <nendo/driver/tracker.hpp>
 #include <nendo/recording/chunk_file.hpp>
 
 namespace nendo::recording {
 
-inline constexpr ChunkType glove_chunk = chunk_type("GLOV"); ///< one per glove
-inline constexpr ChunkType log_chunk = chunk_type("TAPE");   ///< entries of the input log, in order
+inline constexpr ChunkType glove_chunk = chunk_type("GLOV");   ///< one per glove
+inline constexpr ChunkType tracker_chunk = chunk_type("TRAK"); ///< one per tracked wrist
+inline constexpr ChunkType log_chunk = chunk_type("TAPE"); ///< entries of the input log, in order
 
 /// Kinds of entries. Readers skip unknown kinds.
 enum class EntryKind : std::uint8_t {
@@ -33,6 +35,8 @@ enum class EntryKind : std::uint8_t {
   puppet = 13,
   layer = 15,
   wire = 16,
+  pose = 17,
+  recentre = 18,
 };
 
 /// One entry of an input log: its kind and its content.
@@ -68,6 +72,23 @@ NENDO_API std::optional<RecordedSample> sample_of(const LogEntry& record) noexce
 struct RecordedGlove {
   std::uint8_t number = 0;
   driver::GloveInfo info;
+};
+
+/// A pose that moved the wrist of a hand.
+struct RecordedPose {
+  Side side = Side::right;
+  PoseSample pose;
+};
+
+/// Returns the pose of an entry; nullopt if the entry is no pose, or has times or a side that are
+/// out of range. Its numbers are those that the tracker sent.
+NENDO_API std::optional<RecordedPose> pose_of(const LogEntry& record) noexcept;
+
+/// The tracker that moved the wrist of a hand.
+struct RecordedTracker {
+  Side side = Side::right; ///< the hand's side on the stage
+  std::uint16_t station = 0;
+  driver::TrackerInfo info;
 };
 
 /// Writes the payload of a GLOV chunk.

@@ -12,6 +12,7 @@
 #include <nendo/driver/glove.hpp>
 #include <nendo/flow/deform_loop.hpp>
 #include <nendo/recording/chunk_file.hpp>
+#include <nendo/recording/sample_record.hpp>
 
 namespace nendo::recording {
 
@@ -46,6 +47,7 @@ struct LoopSetup {
   /// The initial shape, in blocks of the model's layout; empty: the model's shape.
   std::vector<deform::VertexBlock> rest{};
   RecordedPuppet puppet{}; ///< empty text: no puppet, hands touch the model
+  bool is_tracked = false; ///< trackers move wrists
 };
 
 struct Setup {
@@ -56,7 +58,8 @@ struct Setup {
   std::vector<driver::GloveInfo> gloves; ///< indexed by their numbers
   /// Indexed by glove number, also without a loop. Rings are omitted.
   std::vector<flow::HandInput> hands;
-  std::optional<LoopSetup> loop; ///< nothing if only gloves were recorded
+  std::vector<RecordedTracker> trackers; ///< of tracked wrists (HandInput::wrist_source)
+  std::optional<LoopSetup> loop;         ///< nothing if only gloves were recorded
 };
 
 /// Returns a setup that begins now.

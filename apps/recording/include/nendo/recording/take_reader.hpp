@@ -62,7 +62,7 @@ struct PuppetChange {
 using Entry = std::variant<RecordedSample, flow::Request, flow::WristMove, flow::LoopSettings,
                            flow::HoldStill, flow::ChangeModel, flow::Mark, flow::SetClutch,
                            flow::SetRole, flow::SetSymmetry, flow::SetLayer, flow::DrawWire,
-                           PuppetChange, flow::LoggedTick, Gap>;
+                           PuppetChange, flow::LoggedTick, Gap, RecordedPose, flow::Recentre>;
 
 template <class One, class Of = Entry>
 inline constexpr bool is_entry = false;

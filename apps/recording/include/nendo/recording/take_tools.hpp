@@ -35,6 +35,7 @@ struct NENDO_API TakeSummary {
   std::vector<GloveSummary> gloves; ///< indexed by their numbers
   std::array<std::uint64_t, flow::requests.size()> requests{};
   std::uint64_t wrist_moves = 0;
+  std::uint64_t poses = 0; ///< the poses of trackers
   std::uint64_t settings_changes = 0;
   std::uint64_t model_changes = 0;        ///< also undos and redos of them
   std::uint64_t puppet_changes = 0;       ///< also undos and redos of them

@@ -1,6 +1,7 @@
 #pragma once
 // An open glove with the ring for its samples and the wearer's calibration.
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -9,10 +10,19 @@
 #include <vector>
 
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/driver/open_tracker.hpp>
 #include <nendo/flow/hand_input.hpp>
+#include <nendo/hand/wrist_tracking.hpp>
 #include <nendo/sculpting/find_wearer.hpp>
 
 namespace nendo::sculpting {
+
+/// A tracker's station that moves the wrist of a hand.
+struct OpenWrist {
+  std::unique_ptr<PoseRing> ring; ///< outlives the tracker, whose thread writes the poses
+  driver::TrackerStation station;
+  hand::TrackingOptions tracking{};
+};
 
 struct OpenHand {
   Side side = Side::right;          ///< the hand that it drives
@@ -24,6 +34,7 @@ struct OpenHand {
   /// The pose of the forearm's end, if known from another source than the glove.
   std::optional<Eigen::Isometry3d> T_stage_wrist{};
   std::shared_ptr<const flow::WristPath> wrist_path{}; ///< the path of a moving wrist
+  std::optional<OpenWrist> wrist{};                    ///< nothing: no tracker moves it
 };
 
 /// Makes a hand from an open glove. The default `side` is the glove's own; a different side is
@@ -41,12 +52,25 @@ NENDO_API Result<std::vector<OpenHand>> open_found(std::span<const Side> sides,
                                                    const std::string& simulated,
                                                    const OpenNamed& open, const Note& note);
 
-/// Starts the gloves. Blocks. Errors: those of Glove::start().
-NENDO_API Result<void> start(std::span<OpenHand> hands);
+/// Opens the trackers that `specs` names, by the side of the hand (empty: none), with the drivers
+/// of the library and `more`, for those of `hands` that they move. The tracking is the usual one of
+/// the tracker. Blocks. Errors: those of driver::open_trackers(); usage (no such hand, or both
+/// hands at one station).
+NENDO_API Result<void> open_wrists(std::span<OpenHand> hands,
+                                   const std::array<std::string, 2>& specs,
+                                   std::span<const driver::TrackerDriver> more = {});
 
-/// Restarts simulated gloves and recordings, whose time begins at start(), so that it does not pass
-/// while a run is prepared. Drops their earlier samples. No other thread may read their rings
-/// meanwhile. Blocks as Glove::stop() does. Errors: those of Glove::start().
+/// Returns the tracking that suits the tracker, without a calibration of its mount.
+NENDO_API hand::TrackingOptions usual_tracking(const driver::TrackerInfo& info) noexcept;
+
+/// Starts the gloves and trackers. Blocks. Errors: those of Glove::start() and Tracker::start().
+NENDO_API Result<void> start(std::span<OpenHand> hands);
+/// Stops them. Blocks as Glove::stop() does.
+NENDO_API void stop(std::span<OpenHand> hands) noexcept;
+
+/// Restarts simulated gloves and trackers, and recordings, whose time begins at start(), so that it
+/// does not pass while a run is prepared. Drops their earlier samples. No other thread may read
+/// their rings meanwhile. Blocks as Glove::stop() does. Errors: those of Glove::start().
 NENDO_API Result<void> begin_again(std::span<OpenHand> hands);
 
 /// Returns whether all gloves have ended (Glove::has_ended()), so that no more samples will come.
