@@ -4,23 +4,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "one_euro.hpp"
+
 namespace nendo::hand {
 namespace {
 
 constexpr double turn_rad = 2.0 * std::numbers::pi;
 constexpr std::array<std::string_view, 2> kind_names{"off", "one-euro"};
 
-/// NaN becomes `least`.
-double within(double least, double value, double most) noexcept {
-  return value > least ? std::min(value, most) : least;
-}
-
 bool is_possible(double angle_rad) noexcept {
   return std::abs(angle_rad) <= turn_rad; // not NaN
-}
-
-double time_constant_of(double cutoff_hz) noexcept {
-  return 1.0 / (turn_rad * cutoff_hz);
 }
 
 } // namespace
@@ -37,11 +30,9 @@ std::optional<FilterKind> filter_named(std::string_view name) noexcept {
 }
 
 JointFilter::JointFilter(const FilterOptions& options) noexcept : options_(options) {
-  constexpr double min_hz = 1e-3;
-  constexpr double most = 1e5;
-  options_.min_cutoff_hz = within(min_hz, options.min_cutoff_hz, most);
-  options_.derivative_cutoff_hz = within(min_hz, options.derivative_cutoff_hz, most);
-  options_.beta_hz_per_rad_s = within(0.0, options.beta_hz_per_rad_s, most);
+  options_.min_cutoff_hz = limited_cutoff_hz(options.min_cutoff_hz);
+  options_.derivative_cutoff_hz = limited_cutoff_hz(options.derivative_cutoff_hz);
+  options_.beta_hz_per_rad_s = limited_beta(options.beta_hz_per_rad_s);
 }
 
 double JointFilter::time_constant_s(const Joint& joint) const noexcept {

@@ -37,42 +37,87 @@ struct TrackingOptions {
   WristMount mount{};
   PoseGateOptions gate{};
   PoseFilterOptions filter{};
-  double movement_scale = 1.0; ///< of the station's movements on the stage
+  /// Multiplies the wrist's movements on the stage, about the point of the last recentring.
+  double movement_scale = 1.0;
+  /// The wrist freezes this time after the arrival of the last good pose.
   HostClock::duration lost_after = std::chrono::milliseconds(100);
 };
 
 struct TrackingCounts {
   std::uint64_t poses = 0;   ///< taken
-  std::uint64_t refused = 0; ///< by the gate
+  std::uint64_t refused = 0; ///< poses that the gate refused
   std::uint64_t flips = 0;   ///< poses of the wrong hemisphere, which were mirrored back
   std::uint64_t losses = 0;
 };
 
-/// The wrist that a station moves. Loop's thread; no function allocates.
+/// The wrist that a station moves. Loop's thread; wait-free, no function allocates.
 class NENDO_API WristTracking {
 public:
-  /// The time in which the hand goes to the measured pose after a loss.
+  /// The time in which the hand goes to the measured pose after a loss. It takes more time if a
+  /// fingertip would else get faster by more than max_return_speed_m_s.
   static constexpr std::chrono::milliseconds return_time{100};
+  /// What the return may add to the speed of the hand's own movement.
+  static constexpr double max_return_speed_m_s = 2.0;
   /// After a loss, a hand that is farther away must release the model first: the jump would tear a
   /// stroke.
   static constexpr double max_return_m = 0.2;
 
-  /// `T_stage_wrist` is where the wrist is until the first good pose, and then, too: that pose
-  /// chooses T_stage_tracker, as recentre() does.
+  /// `T_stage_wrist` is where the wrist is until the first good pose, which chooses
+  /// T_stage_tracker so that the wrist stays there, as recentre() does. From the initial pitch and
+  /// roll, the wrist goes to the measured ones as after a loss.
   WristTracking(const TrackingOptions& options, const Eigen::Isometry3d& T_stage_wrist) noexcept;
 
+  /// Takes the station's next sample. The wrist moves at the next advance().
   void take(const PoseSample& sample) noexcept;
   /// Advances to the time of a tick. Returns true if the hand must release the model, because it
   /// came back farther away than max_return_m.
   bool advance(HostTime now) noexcept;
-  /// Chooses T_stage_tracker so that the wrist is at this position with this heading. Its pitch and
-  /// roll stay as measured, so vertical stays vertical.
+  /// Chooses T_stage_tracker so that the wrist is at this position with this heading, at once. Its
+  /// pitch and roll stay as measured, so vertical stays vertical. The heading is the direction of
+  /// the forearm, seen from above; of a steep forearm, that of the back of the hand.
   void recentre(const Eigen::Isometry3d& T_stage_wrist) noexcept;
 
-  const Eigen::Isometry3d& T_stage_wrist() const noexcept;
-  bool is_lost() const noexcept; ///< no good pose for `lost_after`; the wrist is frozen
-  const PoseSample& latest() const noexcept; ///< the last good pose, unfiltered
-  const TrackingCounts& counts() const noexcept;
+  const Eigen::Isometry3d& T_stage_wrist() const noexcept { return T_stage_wrist_; }
+  /// Returns whether there was no good pose for `lost_after`, or none yet. The wrist is frozen.
+  bool is_lost() const noexcept { return is_lost_; }
+  /// Returns the last good pose, as the gate passed it: unfiltered.
+  const PoseSample& latest() const noexcept { return latest_; }
+  const TrackingCounts& counts() const noexcept { return counts_; }
+  PoseLatency filter_latency() const noexcept { return filter_.latency(); }
+
+private:
+  /// The wrist's filtered pose in the tracker's frame.
+  struct WristPose {
+    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+  };
+  /// The way from where the wrist froze to the measured pose.
+  struct Return {
+    Eigen::Vector3d offset_m = Eigen::Vector3d::Zero(); ///< at its begin, from the measured pose
+    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+    HostTime begin{};
+    double length_s = 0.0; ///< 0: none
+  };
+  WristPose wrist_of(const PoseSample& sample) const noexcept;
+  Eigen::Isometry3d measured() const noexcept;
+  Eigen::Isometry3d returning(const Eigen::Isometry3d& measured, HostTime now) noexcept;
+  void begin_return(const Eigen::Isometry3d& measured, HostTime now) noexcept;
+  void choose_stage(const Eigen::Isometry3d& T_stage_wrist) noexcept;
+
+  TrackingOptions options_;
+  PoseGate gate_;
+  PoseFilter filter_;
+  Eigen::Isometry3d T_stage_wrist_;
+  WristPose wrist_;
+  /// T_stage_tracker: this turn, and the point of the tracker's frame that is at that of the stage.
+  Eigen::Quaterniond stage_from_tracker_;
+  Eigen::Vector3d centre_tracker_m_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d centre_stage_m_ = Eigen::Vector3d::Zero();
+  Return return_;
+  PoseSample latest_;
+  TrackingCounts counts_;
+  bool has_pose_ = false;
+  bool is_lost_ = true;
 };
 
 } // namespace nendo::hand

@@ -1,0 +1,124 @@
+#include <nendo/hand/pose_gate.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace nendo::hand {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+/// Nearer to the transmitter, p and -p are too near to each other for a decision by distance.
+constexpr double min_flip_distance_m = 0.1;
+/// A velocity needs at least this much time: stamps of arrival are inexact, because serial adapters
+/// deliver several records at once, and the noise of two positions counts less.
+constexpr double min_baseline_s = 0.012;
+/// After a longer interval, the velocity from before says nothing about the next pose.
+constexpr double longest_step_s = 0.1;
+/// Intervals that only bound a speed count as at least that long, as for SensorGate.
+constexpr double min_interval_s = 0.016;
+
+/// A FASTRAK's letters for a field that is too strong or too weak to measure. Such poses are noise,
+/// so no number of them is a reason to believe the next one.
+bool is_out_of_field(char error) noexcept {
+  return error == 'j' || error == 'k';
+}
+
+} // namespace
+
+Vector3d PoseGate::predicted_m(double interval_s) const noexcept {
+  if (!has_velocity_) return last_.position_m;
+  return last_.position_m + interval_s * velocity_m_s_;
+}
+
+// The last condition is for trackers without hemispheres: a hand that really passes their origin
+// during a short pause is where its velocity has taken it.
+bool PoseGate::is_flip(const Vector3d& position_m, double interval_s) const noexcept {
+  const Vector3d predicted = predicted_m(interval_s);
+  return position_m.norm() > min_flip_distance_m &&
+         (position_m + last_.position_m).norm() < 0.25 * (position_m - last_.position_m).norm() &&
+         (position_m + predicted).norm() < (position_m - predicted).norm();
+}
+
+bool PoseGate::is_expected(const Vector3d& position_m, double interval_s) const noexcept {
+  if (!has_velocity_)
+    return (position_m - last_.position_m).norm() <=
+           noise_m + max_speed_m_s * std::max(interval_s, min_interval_s);
+  const double tolerance_m = noise_m + 0.5 * max_acceleration_m_s2 * interval_s * interval_s;
+  // By the time since the last pose; or one more step like the last one, which is right where
+  // records arrive several at once, and their stamps say little about the time between them.
+  return (position_m - predicted_m(interval_s)).norm() <= tolerance_m ||
+         (position_m - last_.position_m - step_m_).norm() <= tolerance_m;
+}
+
+bool PoseGate::is_expected(const Quaterniond& turn, double interval_s) const noexcept {
+  return last_turn_.angularDistance(turn) <=
+         turn_noise_rad + max_turn_speed_rad_s * std::max(interval_s, min_interval_s);
+}
+
+void PoseGate::restart(const Point& point) noexcept {
+  last_ = newer_ = point;
+  has_last_ = true;
+  has_velocity_ = false;
+}
+
+void PoseGate::advance(const Point& point, double interval_s) noexcept {
+  if (interval_s > longest_step_s) return restart(point);
+  step_m_ = point.position_m - last_.position_m;
+  // A time that went back a little does not count.
+  last_ = {point.position_m, std::max(last_.time, point.time)};
+  if (seconds_between(newer_.time, last_.time) >= min_baseline_s) {
+    older_ = newer_;
+    newer_ = last_;
+    has_velocity_ = true;
+  }
+  if (has_velocity_)
+    velocity_m_s_ =
+        (last_.position_m - older_.position_m) / seconds_between(older_.time, last_.time);
+}
+
+std::optional<PoseSample> PoseGate::pass(const PoseSample& sample) noexcept {
+  Vector3d position_m = Vector3d::Map(sample.position_m.data());
+  Quaterniond turn(sample.turn_xyzw.data());
+  const bool is_possible = position_m.norm() <= options_.max_distance_m &&
+                           std::abs(turn.norm() - 1.0) <= max_length_error; // not NaN
+  if (!is_possible) {
+    ++refused_;
+    return std::nullopt;
+  }
+  turn.normalize();
+
+  const double since_s = seconds_between(last_.time, sample.measured);
+  const double interval_s = std::max(since_s, 0.0);
+  bool restarts = !has_last_ || !(std::abs(since_s) <= longest_pause_s);
+  bool is_mirrored = false;
+  if (!restarts) {
+    // Near the transmitter, only the prediction can decide between p and -p.
+    is_mirrored =
+        is_flip(position_m, interval_s) ||
+        (!is_expected(position_m, interval_s) && is_expected(Vector3d(-position_m), interval_s));
+    if (is_mirrored) position_m = -position_m;
+    restarts = !is_expected(position_m, interval_s) || !is_expected(turn, interval_s);
+    if (restarts && (is_out_of_field(sample.error) || refusals_in_a_row_ < max_refusals_in_a_row)) {
+      ++refusals_in_a_row_;
+      ++refused_;
+      return std::nullopt;
+    }
+  }
+  refusals_in_a_row_ = 0;
+  if (is_mirrored) ++flips_;
+  const Point point{position_m, sample.measured};
+  if (restarts)
+    restart(point);
+  else
+    advance(point, interval_s);
+  last_turn_ = turn;
+
+  PoseSample passed = sample;
+  Vector3d::Map(passed.position_m.data()) = position_m;
+  Eigen::Vector4d::Map(passed.turn_xyzw.data()) = turn.coeffs();
+  return passed;
+}
+
+} // namespace nendo::hand
