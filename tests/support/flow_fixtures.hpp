@@ -62,6 +62,7 @@ struct LoopFixture {
   flow::InputLog* input_log = nullptr;
   std::optional<deform::InjectiveOptions> injective = std::nullopt;
   const char* puppet = nullptr; ///< the text of its file; null: hands that touch the model
+  bool tracked = false;         ///< trackers move the wrists
 };
 
 /// A puppet of the ball: two twins, a function that turns three points, one that listens to a
@@ -119,6 +120,7 @@ flow::LoopSettings any_settings(const flow::LoopSettings& before, Random& random
 /// A loop over two hands whose rings the test fills itself.
 struct LoopUnderTest {
   std::vector<std::unique_ptr<SampleRing>> rings;
+  std::vector<std::unique_ptr<PoseRing>> poses; ///< in the order of Side; empty unless tracked
   flow::CommandRing commands{32};
   deform::Mesh model;
   flow::Placement placement;
@@ -144,6 +146,9 @@ struct LoopUnderTest {
       inputs.back().filter.close_pinches = fixture.close_pinches;
       inputs.back().wearer.adapt = fixture.adapt;
       if (fixture.slips) inputs.back().wearer.ends = narrow_ends(side);
+      if (!fixture.tracked) continue;
+      poses.push_back(std::make_unique<PoseRing>(64));
+      inputs.back().wrist_source = {poses.back().get(), {}};
     }
     placement = flow::place_hands(model, tips);
     if (fixture.puppet != nullptr)

@@ -41,8 +41,19 @@ inline recording::Setup setup_of(const LoopUnderTest& test) {
     setup.gloves.push_back(glove);
     setup.hands.push_back(input);
   }
+  for (std::size_t at = 0; at < test.poses.size(); ++at) {
+    driver::TrackerInfo tracker;
+    tracker.source = "sim:orbit";
+    tracker.model = "a tracker of the test's";
+    tracker.rate_hz = 240.0;
+    tracker.facts = {{"firmware", "1.0"}};
+    const auto station = static_cast<std::uint16_t>(at + 1);
+    tracker.stations = {station};
+    setup.trackers.push_back({test.inputs[at].side, station, tracker});
+  }
   setup.loop = recording::LoopSetup{"ball.obj", recording::sum_of(test.model.vertices),
                                     test.placement, test.options, "AVX2"};
+  setup.loop->is_tracked = !setup.trackers.empty();
   if (test.options.rig) {
     setup.loop->puppet.text = test.options.rig->puppet().text;
     setup.loop->puppet.starts = test.options.rig->starts();
@@ -64,7 +75,7 @@ struct RecordedLoop {
   explicit RecordedLoop(flow::Mode mode, hand::FilterKind filter = hand::FilterKind::off,
                         bool adapts = false, bool injective = false,
                         flow::SwitchAction action = flow::SwitchAction::none,
-                        const char* puppet = nullptr, bool slips = false)
+                        const char* puppet = nullptr, bool slips = false, bool tracked = false)
       : test(mode,
              {.rings_of_ball = 16,
               .switch_action = action,
@@ -74,7 +85,8 @@ struct RecordedLoop {
               .slips = slips,
               .input_log = &input_log,
               .injective = injective ? std::optional(deform::InjectiveOptions{}) : std::nullopt,
-              .puppet = puppet}),
+              .puppet = puppet,
+              .tracked = tracked}),
         setup(setup_of(test)) {}
 
   void record(recording::RecorderOptions options = {}) {

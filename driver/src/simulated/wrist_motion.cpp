@@ -9,12 +9,12 @@
 namespace nendo::driver {
 namespace {
 
-constexpr std::array<std::string_view, 4> motion_names{"rest", "orbit", "table", "cross"};
+constexpr std::array<std::string_view, 4> names_of_motions{"rest", "orbit", "table", "cross"};
 
 using Vector = std::array<double, 3>;
 using Quaternion = std::array<double, 4>; // x y z w
 
-constexpr double tau = 2.0 * std::numbers::pi;
+constexpr double full_turn_rad = 2.0 * std::numbers::pi;
 constexpr double orbit_radius_m = 0.3;
 constexpr double orbit_turn_s = 12.0;
 constexpr double cone_rad = 25.0 * std::numbers::pi / 180.0;
@@ -58,12 +58,12 @@ double side_of(std::uint16_t station) noexcept {
 
 ReceiverPose rest(std::uint16_t station, std::uint32_t seed, double time_s) noexcept {
   const double phase = 0.7 * seed + 1.3 * station;
-  const double tremor = tremor_m * std::sin(tau * 8.3 * time_s + phase);
+  const double tremor = tremor_m * std::sin(full_turn_rad * 8.3 * time_s + phase);
   return receiver_at({0.4 + tremor, 0.2 * side_of(station), -0.1 + 0.6 * tremor}, {0, 0, 0, 1});
 }
 
 ReceiverPose orbit(std::uint16_t station, double time_s) noexcept {
-  const double angle = tau * eased(time_s) / orbit_turn_s;
+  const double angle = full_turn_rad * eased(time_s) / orbit_turn_s;
   const Quaternion turn = about_z(angle);
   const Vector from_centre = rotated(turn, {0.0, orbit_radius_m * side_of(station), 0.0});
   return receiver_at({0.5 + from_centre[0], from_centre[1], -0.1}, turn);
@@ -76,27 +76,27 @@ ReceiverPose table(std::uint16_t station, double time_s) noexcept {
 }
 
 ReceiverPose cross(std::uint16_t station, double time_s) noexcept {
-  const double x = cross_half_m * std::cos(tau * eased(time_s) / cross_s);
+  const double x = cross_half_m * std::cos(full_turn_rad * eased(time_s) / cross_s);
   return receiver_at({x, 0.25 * side_of(station), -0.15}, {0, 0, 0, 1});
 }
 
 } // namespace
 
 Result<WristMotion> find_wrist_motion(std::string_view name) {
-  if (const auto motion = enumerator_named<WristMotion>(motion_names, name)) return *motion;
+  if (const auto motion = enumerator_named<WristMotion>(names_of_motions, name)) return *motion;
   std::string names;
-  for (const std::string_view known : motion_names)
+  for (const std::string_view known : names_of_motions)
     names.append(names.empty() ? "" : ", ").append(known);
   return Error{Errc::usage,
                "there is no motion \"" + std::string(name) + "\" of a tracker; there is " + names};
 }
 
 std::vector<std::string_view> wrist_motion_names() {
-  return {motion_names.begin(), motion_names.end()};
+  return {names_of_motions.begin(), names_of_motions.end()};
 }
 
 ForearmAngles forearm_angles(double time_s) noexcept {
-  const double phase = tau * time_s / circle_s;
+  const double phase = full_turn_rad * time_s / circle_s;
   return {cone_rad * std::cos(phase), cone_rad * std::sin(phase)};
 }
 
