@@ -80,6 +80,7 @@ private:
   void dispatch(const flow::Command& command);
   void dispatch(const Rig& rig) { puppet_ = rig; } // only the newest counts
   void execute(flow::Request request) { for_loop_.push(request); }
+  void execute(const flow::Recentre& recentre) { for_loop_.push(recentre); }
   void execute(const flow::WristMove& move);
   void execute(const flow::ChangeSettings& change) { settings_ = change.settings; } // newest only
   void execute(const flow::SetRecording& recording) { record_ = recording.on; }

@@ -29,6 +29,9 @@ Quaternion about_z(double angle) noexcept {
 Quaternion about_y(double angle) noexcept {
   return {0.0, std::sin(0.5 * angle), 0.0, std::cos(0.5 * angle)};
 }
+Quaternion about_x(double angle) noexcept {
+  return {std::sin(0.5 * angle), 0.0, 0.0, std::cos(0.5 * angle)};
+}
 Quaternion product(const Quaternion& a, const Quaternion& b) noexcept {
   return {a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
           a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
@@ -64,9 +67,10 @@ ReceiverPose rest(std::uint16_t station, std::uint32_t seed, double time_s) noex
 
 ReceiverPose orbit(std::uint16_t station, double time_s) noexcept {
   const double angle = full_turn_rad * eased(time_s) / orbit_turn_s;
-  const Quaternion turn = about_z(angle);
-  const Vector from_centre = rotated(turn, {0.0, orbit_radius_m * side_of(station), 0.0});
-  return receiver_at({0.5 + from_centre[0], from_centre[1], -0.1}, turn);
+  const Quaternion walk = about_z(angle);
+  const Vector from_centre = rotated(walk, {0.0, orbit_radius_m * side_of(station), 0.0});
+  const Quaternion palm_inwards = about_x(0.25 * full_turn_rad * side_of(station));
+  return receiver_at({0.5 + from_centre[0], from_centre[1], -0.1}, product(walk, palm_inwards));
 }
 
 ReceiverPose table(std::uint16_t station, double time_s) noexcept {
