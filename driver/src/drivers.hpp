@@ -1,6 +1,7 @@
 #pragma once
-// The functions that open the kinds of gloves, for the table of drivers. All block for 4 s at most
-// (open_auto: 5 s) unless they take a deadline. Errors: usage (option), no_device, no_permission.
+// The functions that open the kinds of gloves and trackers, for the tables of drivers. All block
+// for 4 s at most (open_auto: 5 s) unless they take a deadline. Errors: usage (option), no_device,
+// no_permission.
 
 #include <cstdint>
 #include <memory>
@@ -79,4 +80,16 @@ namespace forte {
 Result<std::unique_ptr<Glove>> open_forte(const DeviceSpec& spec, std::optional<Side> side);
 
 } // namespace forte
+
+namespace fastrak {
+
+/// Opens `fastrak:PATH[?station=N&baud=N&hemisphere=x,y,z&filter=on|off]`, a Polhemus FASTRAK, or
+/// an InterSense tracker that speaks as one, at a serial port. All stations of `stations` are
+/// switched on, the others off. Without `baud` each rate is tried; one that is too slow for the
+/// records is refused. `hemisphere` is the direction, from the transmitter, in which the receivers
+/// are.
+Result<std::unique_ptr<Tracker>> open_fastrak(const DeviceSpec& spec,
+                                              std::span<const std::uint16_t> stations);
+
+} // namespace fastrak
 } // namespace nendo::driver

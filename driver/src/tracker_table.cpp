@@ -25,6 +25,9 @@ Result<std::uint16_t> take_numbered_station(DeviceSpec& spec) {
 constexpr std::array own_drivers{
     TrackerDriver{"sim", "sim[:MOTION][?station=N&rate=HZ&seed=N]", "a simulated tracker",
                   take_numbered_station, open_simulated_tracker},
+    TrackerDriver{"fastrak", "fastrak:PATH[?station=N&baud=N&hemisphere=X,Y,Z&filter=on|off]",
+                  "Polhemus FASTRAK, InterSense IS-300, IS-600, IS-900", take_numbered_station,
+                  fastrak::open_fastrak},
 };
 
 Result<TrackerDriver> find_driver(const DeviceSpec& spec, std::span<const TrackerDriver> more) {

@@ -1,0 +1,208 @@
+#include "fastrak/fastrak_identity.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <string_view>
+
+namespace nendo::driver::fastrak {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto quiet_time = 60ms; ///< longer than a record of text at 9600 baud, 49 ms
+constexpr auto max_drain = 250ms;
+// The answer's 55 bytes take 57 ms at 9600 baud. Five rates without an answer, twice, are 3.1 s,
+// less than open_budget; twice at one rate are 2.1 s.
+constexpr auto answer_time = 250ms;
+constexpr auto single_answer_time = 1000ms;
+constexpr auto stations_time = 300ms;
+constexpr auto pace = 10ms; ///< after each command: no source says how many fit into its buffer
+
+std::vector<int> bauds_to_try(const Options& options, int first) {
+  if (options.baud) return {*options.baud};
+  std::vector<int> order{first};
+  for (const int baud : bauds)
+    if (baud != first) order.push_back(baud);
+  return order;
+}
+
+/// Who answered, and at which rate.
+struct Greeting {
+  Status status;
+  int baud = 0;
+};
+
+std::optional<Greeting> greet(Transport& transport, TextDialogue& dialogue, const Options& options,
+                              int first_baud) {
+  std::optional<Status> status;
+  const auto is_answered = [&](const std::string& heard) {
+    status = find_status(heard);
+    return status.has_value();
+  };
+  const std::vector<int> order = bauds_to_try(options, first_baud);
+  // The CR is for a tracker that waits for the rest of a command.
+  for (const std::string& begin : {std::string(stop_command), "\r" + std::string(stop_command)}) {
+    for (const int baud : order) {
+      if (!transport.set_baud(baud) && baud != order.front()) break;
+      dialogue.forget();
+      dialogue.send(begin);
+      dialogue.fall_quiet(quiet_time, max_drain);
+      dialogue.send(status_command);
+      if (dialogue.hear(options.baud ? single_answer_time : answer_time, is_answered))
+        return Greeting{*std::move(status), baud};
+      if (dialogue.is_over()) return std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+Error stranger(const std::string& source, const Options& options, bool is_silent) {
+  std::string tried;
+  for (const int baud : bauds_to_try(options, bauds.front()))
+    tried += (tried.empty() ? "" : ", ") + std::to_string(baud);
+  return {Errc::no_device,
+          source +
+              (is_silent ? ": nothing comes from it" : ": what is there is no FASTRAK, or busy") +
+              "; is the tracker switched on, is this its port, and is its line set to 8 bits and a "
+              "baud rate of " +
+              tried + "? If so, restart it: switch it off and on, or send it ^Y, and wait 10 s"};
+}
+
+std::string station_command(char command, std::uint16_t station, std::string_view parameters) {
+  return std::string{command, station_digit(station)}.append(parameters);
+}
+
+std::string hemisphere_parameters(const std::array<double, 3>& zenith) {
+  std::string text;
+  for (const double component : zenith) {
+    std::array<char, 32> digits{};
+    const auto end =
+        std::to_chars(digits.begin(), digits.end(), component, std::chars_format::fixed, 4).ptr;
+    text.append(",").append(digits.begin(), end);
+  }
+  return text + "\r";
+}
+
+class Setup {
+public:
+  Setup(TextDialogue& dialogue, const std::string& source, const Options& options,
+        Identity& identity)
+      : dialogue_(dialogue), source_(source), options_(options), identity_(identity) {}
+
+  /// Switches the wanted stations on and the others off, which leaves more records to the wanted
+  /// ones. They are switched on first, because the last one cannot be switched off [V].
+  Result<void> choose_stations() {
+    const std::uint16_t last = identity_.status.is_intersense ? max_stations : fastrak_stations;
+    for (const std::uint16_t station : options_.stations)
+      if (station > last) return no_such_station(station, last);
+    for (std::uint16_t station = 1; station <= fastrak_stations; ++station)
+      command(station_command('l', station, ",1\r")); // an earlier program's choice
+    for (const std::uint16_t station : options_.stations)
+      if (station > fastrak_stations) command(station_command('l', station, ",1\r"));
+    dialogue_.forget();
+    dialogue_.send(stations_query);
+    const auto is_answered = [](const std::string& heard) { return bool(find_stations(heard)); };
+    dialogue_.hear(stations_time, is_answered);
+    const auto digits = find_stations(dialogue_.heard());
+    if (!digits) return unanswered("l");
+    return choose_stations(std::string(*digits));
+  }
+
+  /// Sets what the records contain, the units and the filters.
+  Result<void> configure() {
+    dialogue_.forget();
+    for (const std::uint16_t station : options_.stations) {
+      command(station_command('O', station, record_items));
+      command(station_command('I', station, ",0\r")); // records also while it is at rest [M 53]
+      command(station_command('H', station, hemisphere_parameters(options_.hemisphere)));
+    }
+    command(centimetres_command);
+    command(no_stylus_command);
+    for (const std::string_view filter : options_.is_filtered ? filters_on : filters_off)
+      command(filter);
+    dialogue_.send(status_command);
+    const auto is_answered = [](const std::string& heard) { return bool(find_status(heard)); };
+    dialogue_.hear(single_answer_time, is_answered);
+    const auto status = find_status(dialogue_.heard());
+    if (!status) return unanswered("S");
+    if (!status->is_metric())
+      return Error{Errc::no_device, source_ + ": the tracker refuses centimetres (u)"};
+    identity_.refusals = find_refusals(dialogue_.heard());
+    const bool has_records = identity_.refusals.find('O') == std::string::npos;
+    if (has_records) return {};
+    return Error{Errc::no_device,
+                 source_ + ": the tracker refuses the form of its records: " + identity_.refusals};
+  }
+
+private:
+  void command(std::string_view text) {
+    dialogue_.send(text);
+    dialogue_.hear(pace);
+  }
+  Result<void> choose_stations(const std::string& digits) {
+    std::string& plugged_in = identity_.plugged_in;
+    const auto is_on = [&](std::uint16_t station) {
+      return station <= digits.size() && digits[station - 1U] == '1';
+    };
+    for (std::uint16_t station = 1; station <= digits.size(); ++station)
+      if (is_on(station)) plugged_in += (plugged_in.empty() ? "" : ", ") + std::to_string(station);
+    for (const std::uint16_t station : options_.stations)
+      if (!is_on(station)) return not_plugged_in(station);
+    const auto& wanted = options_.stations;
+    for (std::uint16_t station = 1; station <= digits.size(); ++station)
+      if (is_on(station) && std::find(wanted.begin(), wanted.end(), station) == wanted.end())
+        command(station_command('l', station, ",0\r"));
+    return {};
+  }
+  Error no_such_station(std::uint16_t station, std::uint16_t last) const {
+    return {Errc::usage, source_ + ": there is no station " + std::to_string(station) +
+                             "; stations are 1 to " + std::to_string(last)};
+  }
+  Error not_plugged_in(std::uint16_t station) const {
+    const std::string others =
+        identity_.plugged_in.empty() ? "no station is" : "plugged in: " + identity_.plugged_in;
+    return {Errc::no_device, source_ + ": no receiver is plugged in at station " +
+                                 std::to_string(station) + "; " + others};
+  }
+  Error unanswered(std::string_view query) const {
+    if (dialogue_.is_gone()) return went_away(source_);
+    return {Errc::no_device, source_ + ": the tracker answered S, but not " + std::string(query) +
+                                 "; switch it off and on"};
+  }
+
+  TextDialogue& dialogue_;
+  const std::string& source_;
+  const Options& options_;
+  Identity& identity_;
+};
+
+} // namespace
+
+std::optional<std::string> too_slow(int baud) {
+  const int carried = baud / bits_per_byte;
+  const int needed = static_cast<int>(records_per_second) * static_cast<int>(record_bytes);
+  if (carried >= needed) return std::nullopt;
+  return "a line of " + std::to_string(baud) + " baud carries " + std::to_string(carried) +
+         " bytes per second, and the tracker's 120 records of " + std::to_string(record_bytes) +
+         " bytes need " + std::to_string(needed) +
+         "; set its switches to 115200 or 57600, then switch it off and on";
+}
+
+Result<Identity> identify(Transport& transport, TextDialogue& dialogue, const std::string& source,
+                          const Options& options, int first_baud) {
+  const std::uint64_t before = dialogue.bytes_received();
+  auto greeting = greet(transport, dialogue, options, first_baud);
+  if (dialogue.is_gone()) return went_away(source);
+  if (!greeting) return stranger(source, options, dialogue.bytes_received() == before);
+  Identity identity;
+  identity.baud = greeting->baud;
+  identity.status = std::move(greeting->status);
+  if (const auto why = too_slow(identity.baud)) return Error{Errc::no_device, source + ": " + *why};
+  Setup setup(dialogue, source, options, identity);
+  if (auto chosen = setup.choose_stations(); !chosen) return chosen.error();
+  if (auto configured = setup.configure(); !configured) return configured.error();
+  return identity;
+}
+
+} // namespace nendo::driver::fastrak
