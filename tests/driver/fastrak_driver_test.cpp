@@ -1,0 +1,308 @@
+#include <nendo/driver/open_tracker.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "support/tracker_laws.hpp"
+
+namespace fastrak_driver_test {
+
+using namespace nendo;
+using namespace nendo::driver;
+using namespace nendo::test;
+
+namespace {
+
+std::unique_ptr<PythonDevice> plug(std::vector<std::string> options = {}) {
+  return std::make_unique<PythonDevice>(NENDO_FASTRAK_DEVICE, std::move(options));
+}
+
+TrackerKind fastrak() {
+  return {plug, [](const std::string& path) { return "fastrak:" + path; }, 33};
+}
+
+std::vector<std::string> specs_of(const std::string& path, const std::vector<int>& stations,
+                                  const std::string& more = {}) {
+  std::vector<std::string> specs;
+  for (const int station : stations)
+    specs.push_back("fastrak:" + path + "?station=" + std::to_string(station) + more);
+  return specs;
+}
+
+/// Returns the number of a record of the Python device, or -1 if it is not the one that was sent:
+/// x is 20 cm and 0.1 mm per record, the turn about z a milliradian per record.
+int number_of(const PoseSample& sample) {
+  const double number = (sample.position_m[0] - 0.2) / 0.0001;
+  const double half_rad = std::round(number) / 2000.0;
+  const bool good = std::abs(number - std::round(number)) < 0.01 &&
+                    std::abs(sample.position_m[1] - 0.1 * sample.station) < 1e-6 &&
+                    std::abs(sample.position_m[2] + 0.3) < 1e-6 &&
+                    std::abs(sample.turn_xyzw[2] - std::sin(half_rad)) < 1e-6 &&
+                    std::abs(sample.turn_xyzw[3] - std::cos(half_rad)) < 1e-6 &&
+                    sample.turn_xyzw[0] == 0.0 && sample.turn_xyzw[1] == 0.0;
+  return good ? static_cast<int>(std::round(number)) : -1;
+}
+
+/// What arrived at some stations.
+struct Heard {
+  std::size_t wrong = 0;
+  std::size_t lost = 0;
+  std::size_t count = 0;
+  double rate_hz = 0.0; ///< of the station with the greatest error
+};
+
+Heard look_at(std::vector<std::unique_ptr<PoseRing>>& rings, double nominal_hz) {
+  Heard heard;
+  heard.rate_hz = nominal_hz;
+  for (const auto& ring : rings) {
+    int last = -1;
+    std::vector<HostTime> arrivals;
+    ring->drain([&](const PoseSample& sample) {
+      const int number = number_of(sample);
+      if (number < 0) ++heard.wrong;
+      if (last >= 0) heard.lost += static_cast<std::size_t>((number - last + 999) % 1000);
+      last = number;
+      arrivals.push_back(sample.arrival);
+    });
+    heard.count += arrivals.size();
+    REQUIRE(arrivals.size() > 10);
+    const double seconds = to_seconds(arrivals.back() - arrivals.front());
+    const double rate_hz = static_cast<double>(arrivals.size() - 1) / seconds;
+    if (std::abs(rate_hz - nominal_hz) > std::abs(heard.rate_hz - nominal_hz))
+      heard.rate_hz = rate_hz;
+  }
+  return heard;
+}
+
+/// Streams these stations for `seconds`.
+Heard stream(const std::vector<std::string>& specs, std::chrono::seconds seconds) {
+  std::vector<std::unique_ptr<PoseRing>> rings;
+  std::vector<PoseRing*> pointers;
+  for (std::size_t k = 0; k < specs.size(); ++k)
+    pointers.push_back(rings.emplace_back(std::make_unique<PoseRing>(1U << 12U)).get());
+  const auto stations = required(open_trackers(specs));
+  test::require_ok(start_trackers(stations, pointers));
+  std::this_thread::sleep_for(seconds);
+  stations.front().tracker->stop();
+  const StreamStats stats = stations.front().tracker->stats();
+  const Heard heard = look_at(rings, 120.0 / static_cast<double>(specs.size()));
+  CHECK(stats.bad_records == 0);
+  CHECK(stats.ring_refused == 0);
+  CHECK(stats.records == heard.count);
+  check_tracker_conservation(stats, 33);
+  return heard;
+}
+
+} // namespace
+
+TEST_SUITE("fastrak_driver") {
+  TEST_CASE("one to four FASTRAK stations share 120 poses per second, and none is lost or wrong") {
+    for (const std::vector<int>& stations :
+         {std::vector{1}, std::vector{2, 1}, std::vector{1, 3, 4}, std::vector{1, 2, 3, 4}}) {
+      CAPTURE(stations.size());
+      const double nominal_hz = 120.0 / static_cast<double>(stations.size());
+      const auto port = plug();
+      Heard heard;
+      for (int tries = 0; tries < 3; ++tries) { // the machine may be busy
+        heard = stream(specs_of(port->path(), stations), 4s);
+        if (std::abs(heard.rate_hz / nominal_hz - 1.0) <= 0.01) break;
+      }
+      CHECK(heard.rate_hz == doctest::Approx(nominal_hz).epsilon(0.01));
+      CHECK(heard.wrong == 0);
+      CHECK(heard.lost == 0);
+    }
+  }
+
+  TEST_CASE("a FASTRAK reports who it is, and its stations are switched on, the others off") {
+    const auto port = plug({"--plugged", "134"});
+    const auto stations = required(open_trackers(specs_of(port->path(), {4, 1})));
+    CHECK(stations[0].tracker == stations[1].tracker);
+    CHECK(stations[0].station == 4);
+    const TrackerInfo& info = stations[0].tracker->info();
+    CHECK(info.model == "Polhemus FASTRAK");
+    CHECK(info.stations == std::vector<std::uint16_t>{4, 1});
+    CHECK(info.rate_hz == 120.0);
+    CHECK(info.stage_from_tracker_xyzw == stage_from_z_down_xyzw);
+    CHECK_FALSE(info.is_filtered);
+    CHECK(fact(info, "firmware") == "02.03");
+    CHECK(fact(info, "identification") == "FASTRAK emulated in Python");
+    CHECK(fact(info, "stations_plugged_in") == "1, 3, 4");
+    CHECK(fact(info, "error") == "none");
+    CHECK(fact(info, "baud") == "115200");
+    CHECK(port->ask("counts") == "sent 0 forbidden 0 on 14");
+    const std::string heard = port->ask("heard");
+    for (const char* command : {"O1,2,11,1", "I4,0", "H4,1.0000,0.0000,0.0000", "e1,0", " u ",
+                                "x0,1,0,0", "v0,1,0,0", "l3,0"})
+      CHECK_MESSAGE(heard.find(command) != std::string::npos, command);
+    // Both stations again, after a run that had switched them off.
+    CHECK(required(open_trackers(specs_of(port->path(), {3}))).front().station == 3);
+    CHECK(port->ask("counts") == "sent 0 forbidden 0 on 3");
+  }
+
+  TEST_CASE("the options of a FASTRAK reach it") {
+    const auto port = plug();
+    const auto heard =
+        stream(specs_of(port->path(), {1}, "&baud=115200&hemisphere=0,0,-1&filter=on"), 1s);
+    CHECK(heard.wrong == 0);
+    const std::string commands = port->ask("heard");
+    CHECK(commands.find("H1,0.0000,0.0000,-1.0000") != std::string::npos);
+    CHECK(commands.find("x0.2,0.2,0.8,0.8") != std::string::npos);
+    const auto station = required(open_trackers(specs_of(port->path(), {1}, "&filter=on"))).front();
+    CHECK(station.tracker->info().is_filtered);
+    // In the other half space it reports the opposite position.
+    const auto turned = stream(specs_of(port->path(), {1}, "&hemisphere=0,0,1"), 1s);
+    CHECK(turned.wrong == turned.count);
+  }
+
+  TEST_CASE("a FASTRAK is found at each rate of its line; one that is too slow is refused") {
+    for (const auto& [baud, bytes] :
+         {std::pair("115200", ""), std::pair("57600", ""), std::pair("38400", "3840"),
+          std::pair("19200", "1920"), std::pair("9600", "960")}) {
+      CAPTURE(baud);
+      const auto port = plug({"--baud", baud});
+      const std::string spec = specs_of(port->path(), {1}).front();
+      const std::string set = spec + "&baud=" + baud;
+      const auto begin = HostClock::now();
+      if (std::string_view(bytes).empty()) {
+        CHECK(fact(required(open_trackers(std::vector{spec})).front().tracker->info(), "baud") ==
+              baud);
+        MESSAGE("found at ", baud, " baud after ", to_seconds(HostClock::now() - begin), " s");
+        CHECK(stream({set}, 1s).wrong == 0);
+        continue;
+      }
+      check_no_tracker(spec, std::string("carries ") + bytes + " bytes per second");
+      MESSAGE("refused at ", baud, " baud after ", to_seconds(HostClock::now() - begin), " s");
+      const auto refused = open_trackers(std::vector{set});
+      REQUIRE_FALSE(refused);
+      CHECK(refused.error().code == Errc::usage);
+      CHECK(refused.error().message.find("need 3960") != std::string::npos);
+    }
+  }
+
+  TEST_CASE("a FASTRAK at another rate than baud= is not found, and the error says so") {
+    const auto port = plug({"--baud", "57600"});
+    check_no_tracker("fastrak:" + port->path() + "?baud=115200", "baud rate of 115200");
+  }
+
+  TEST_CASE("a FASTRAK that streams, or waits for the rest of a command, is found at any rate") {
+    for (const char* odd : {"streaming", "waiting"}) {
+      for (const char* baud : {"115200", "57600"}) {
+        CAPTURE(odd);
+        CAPTURE(baud);
+        const auto port = plug({"--odd", odd, "--baud", baud});
+        CHECK(stream(specs_of(port->path(), {1}), 1s).wrong == 0);
+        CHECK(port->ask("counts").find("forbidden 0") != std::string::npos);
+      }
+    }
+  }
+
+  TEST_CASE("a station without a receiver is an error that lists the others") {
+    const auto port = plug({"--plugged", "13"});
+    const auto none = open_trackers(specs_of(port->path(), {1, 2}));
+    REQUIRE_FALSE(none);
+    CHECK(none.error().code == Errc::no_device);
+    CHECK(none.error().message.find("station 2; plugged in: 1, 3") != std::string::npos);
+    const auto beyond = open_trackers(specs_of(port->path(), {5}));
+    REQUIRE_FALSE(beyond);
+    CHECK(beyond.error().code == Errc::usage);
+    CHECK(beyond.error().message.find("1 to 4") != std::string::npos);
+  }
+
+  TEST_CASE("a FASTRAK that refuses centimetres or a question is an error, without filters it is "
+            "used") {
+    const auto inches = plug({"--odd", "inches"});
+    check_no_tracker("fastrak:" + inches->path(), "centimetres");
+    const auto deaf = plug({"--odd", "deaf"});
+    check_no_tracker("fastrak:" + deaf->path(), "not l");
+    const auto refusing = plug({"--odd", "refuse"});
+    const auto station = required(open_trackers(specs_of(refusing->path(), {1}))).front();
+    CHECK(fact(station.tracker->info(), "refused_commands") ==
+          "x0,1,0,0 (error -99), v0,1,0,0 (error -99)");
+  }
+
+  TEST_CASE("an InterSense tracker is used as a FASTRAK of unknown rate") {
+    const auto port = plug({"--status", "54"});
+    const auto station = required(open_trackers(specs_of(port->path(), {2}))).front();
+    CHECK(station.tracker->info().model == "InterSense, as FASTRAK");
+    CHECK(station.tracker->info().rate_hz == 0.0);
+    CHECK(stream(specs_of(port->path(), {2}), 1s).wrong == 0);
+  }
+
+  TEST_CASE("an error letter arrives with its pose") {
+    const auto port = plug({"--error", "k"});
+    OneStation hand("fastrak:" + port->path());
+    test::require_ok(hand.start());
+    PoseSample sample;
+    REQUIRE(eventually([&] { return hand.ring.try_pop(sample); }));
+    hand.tracker().stop();
+    CHECK(sample.error == 'k');
+    CHECK(number_of(sample) == 0);
+  }
+
+  TEST_CASE("the time of a pose excludes line, solution and the records that came with it") {
+    const auto port = plug({"--burst", "4"});
+    OneStation hand("fastrak:" + port->path());
+    test::require_ok(hand.start());
+    REQUIRE(eventually([&] { return hand.ring.size() >= 40; }));
+    hand.tracker().stop();
+    // 33 bytes of 10 bits at 115200 baud are 2.865 ms, the solution takes 3.75 ms; a cycle 8.333
+    // ms.
+    std::vector<PoseSample> samples;
+    hand.ring.drain([&](const PoseSample& sample) { samples.push_back(sample); });
+    int pairs = 0;
+    for (std::size_t k = 1; k < samples.size(); ++k) {
+      const bool is_last = k + 1 == samples.size() || samples[k + 1].arrival != samples[k].arrival;
+      const double delay_ms = to_milliseconds(samples[k].arrival - samples[k].measured);
+      if (is_last) CHECK(delay_ms == doctest::Approx(6.615).epsilon(0.001));
+      if (samples[k].arrival != samples[k - 1].arrival) continue;
+      ++pairs;
+      CHECK(to_milliseconds(samples[k].measured - samples[k - 1].measured) <= 8.334);
+    }
+    CHECK(pairs > 20);
+  }
+
+  TEST_CASE("a FASTRAK's options that are none are usage errors that name what there is") {
+    wrong_tracker_options_are_usage_errors("fastrak",
+                                           {{"?rate=9", "baud"},
+                                            {"?baud=4800", "115200, 57600"},
+                                            {"?baud=9600", "carries 960 bytes per second"},
+                                            {"?station=0", "station"},
+                                            {"?station=13", "station"},
+                                            {"?hemisphere=1,0", "three numbers"},
+                                            {"?hemisphere=1,0,0,0", "three numbers"},
+                                            {"?hemisphere=1,x,0", "three numbers"},
+                                            {"?hemisphere=1,0,2", "three numbers"},
+                                            {"?filter=maybe", "off, on"}});
+  }
+
+  TEST_CASE("what is no FASTRAK is an error that says so") {
+    no_tracker_is_an_error_that_says_so(fastrak());
+  }
+  TEST_CASE("a FASTRAK's poses are in order and add up") {
+    poses_are_in_order_and_add_up(fastrak());
+  }
+  TEST_CASE("a full ring refuses a FASTRAK's poses and they are counted") {
+    a_full_ring_refuses_poses_and_counts(fastrak());
+  }
+  TEST_CASE("a FASTRAK stops promptly and starts again") {
+    a_tracker_stops_promptly_and_starts_again(fastrak());
+  }
+  TEST_CASE("a FASTRAK that falls silent is started again") {
+    a_silent_tracker_is_started_again(fastrak());
+  }
+  TEST_CASE("a FASTRAK stops promptly while it is silent or away") {
+    a_tracker_stops_promptly_while_silent_or_away(fastrak());
+  }
+  TEST_CASE("a FASTRAK that vanishes is found again and set up") {
+    a_tracker_that_vanishes_is_found_again(fastrak());
+  }
+}
+
+} // namespace fastrak_driver_test

@@ -1,0 +1,44 @@
+// The first byte chooses how the rest, which is the stream, is cut into chunks, and the stations
+// that are taken.
+
+#include "fastrak/fastrak_parser.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "parser_fuzz.hpp"
+
+using namespace nendo::driver::fastrak;
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const auto stream = rest_of({data, size});
+  constexpr std::array<std::uint16_t, 2> stations{1, 2};
+  const bool takes_all = *data % 2U == 0;
+  Parser parser;
+  if (!takes_all) parser.expect(stations);
+  std::uint64_t records = 0;
+  const auto sink = [&](const Record& record) {
+    ++records;
+    require(record.station >= 1 && record.station <= (takes_all ? max_stations : 2));
+    double squares = 0.0;
+    for (const double component : record.turn_xyzw)
+      squares += component * component;
+    require(std::abs(std::sqrt(squares) - 1.0) <= max_norm_error);
+    for (const double coordinate_m : record.position_m)
+      require(std::abs(coordinate_m) <= max_coordinate_cm / 100.0);
+  };
+  push_stream(parser, {stream, 1 + *data % 7U, record_bytes}, [&](auto chunk) {
+    parser.push(chunk, sink);
+    require(parser.counters().records == records);
+    require(parser.counters().record_bytes == records * record_bytes);
+  });
+
+  Parser uncut;
+  if (!takes_all) uncut.expect(stations);
+  uncut.push(stream, [](const Record&) {});
+  require(uncut.counters().records == records);
+  require(uncut.counters().bad_records == parser.counters().bad_records);
+  return 0;
+}
