@@ -84,7 +84,9 @@ class Unit:
         self.heard.append(text)
         letter, station, rest = text[:1], text[1:2], text[2:]
         values = rest[1:].split(",") if rest.startswith(",") else []
-        if letter in "xv" and len(text) > 1:
+        if not all(value.lstrip("-").replace(".", "").isdigit() for value in values):
+            self.error(text, -2)
+        elif letter in "xv" and len(text) > 1:
             if self.options.odd == "refuse":
                 self.error(text, -99)
         elif letter not in "lOHIe" or station not in "1234":

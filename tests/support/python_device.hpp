@@ -28,6 +28,7 @@ public:
     std::array<int, 2> output{};
     if (::pipe2(input.data(), O_CLOEXEC) != 0 || ::pipe2(output.data(), O_CLOEXEC) != 0)
       throw std::runtime_error("no pipe");
+    ::signal(SIGPIPE, SIG_IGN); // if the program ends early, answers are empty
     pid_ = ::fork();
     if (pid_ == 0) {
       ::dup2(input[0], STDIN_FILENO);

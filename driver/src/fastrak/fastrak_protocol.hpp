@@ -59,7 +59,7 @@ inline constexpr std::size_t record_bytes = 33;
 inline constexpr char record_begin = '0';
 /// Further away than any transmitter reaches: that of long range, 4.6 m [?].
 inline constexpr double max_coordinate_cm = 500.0;
-inline constexpr double max_norm_error = 0.002; ///< of the quaternion [?]
+inline constexpr double max_norm_error = 0.002; ///< how far a quaternion may be off [?]
 
 /// One station after the other, so 120 records per second of one to four stations [M].
 inline constexpr double records_per_second = 120.0;
@@ -69,7 +69,7 @@ inline constexpr std::chrono::microseconds solution_delay{3750};
 /// The answer to `S` [M 68], text in each mode.
 struct Status {
   unsigned flags = 0;
-  std::string error; ///< of the self-test; empty: none
+  std::string error; ///< what the self-test found; empty: nothing
   std::string firmware;
   std::string identification;
   bool is_intersense = false; ///< 54 bytes in place of 55 [V]
