@@ -45,7 +45,7 @@ struct Options {
 
 /// A glove on a pseudo-terminal, which answers the driver as the real one's electronics would.
 struct DemoGlove {
-  std::unique_ptr<emulator::GloveEmulator> unit;
+  std::unique_ptr<emulator::DeviceEmulator> unit;
   std::unique_ptr<emulator::ServedEmulator> server;
 };
 
@@ -56,7 +56,7 @@ Result<DemoGlove> emulate(Side side, const Options& demo) {
   options.rate_hz = rate_hz;
   options.seed = 7;
   if (demo.is_face()) options.motion = "faces";
-  auto unit = emulator::GloveEmulator::open(options);
+  auto unit = emulator::DeviceEmulator::open(options);
   if (!unit) return unit.error();
   DemoGlove glove{*std::move(unit), nullptr};
   glove.server = std::make_unique<emulator::ServedEmulator>(*glove.unit);

@@ -143,7 +143,7 @@ void print(const emulator::EmulatorStats& stats) {
 
 int emulate(Options& options) {
   if (const auto completed = complete(options); !completed) return cli::report(completed.error());
-  const auto emulator = emulator::GloveEmulator::open(options.emulator);
+  const auto emulator = emulator::DeviceEmulator::open(options.emulator);
   if (!emulator) return cli::report(emulator.error());
 
   cli::install_stop_signals();

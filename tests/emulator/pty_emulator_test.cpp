@@ -22,7 +22,7 @@ namespace pty_emulator_test {
 using namespace std::chrono_literals;
 using nendo::Errc;
 using nendo::emulator::EmulatorOptions;
-using nendo::emulator::GloveEmulator;
+using nendo::emulator::DeviceEmulator;
 using nendo::test::eventually;
 using nendo::test::PtyHost;
 using nendo::test::ServedEmulator;
@@ -126,11 +126,11 @@ TEST_SUITE("pty_emulator") {
     const TemporaryFolder folder;
     EmulatorOptions options;
     options.link = folder.path() / "glove";
-    REQUIRE(GloveEmulator::open(options));
+    REQUIRE(DeviceEmulator::open(options));
     CHECK_FALSE(fs::is_symlink(fs::symlink_status(options.link)));
 
     {
-      const auto emulator = GloveEmulator::open(options);
+      const auto emulator = DeviceEmulator::open(options);
       fs::remove(options.link);
       fs::create_symlink("/dev/null", options.link);
     }
@@ -142,7 +142,7 @@ TEST_SUITE("pty_emulator") {
     EmulatorOptions options;
     options.link = folder.path() / "glove";
     fs::create_symlink("/dev/nendo-was-here", options.link);
-    const auto emulator = GloveEmulator::open(options);
+    const auto emulator = DeviceEmulator::open(options);
     REQUIRE(emulator);
     CHECK(fs::read_symlink(options.link) == (*emulator)->tty_path());
     CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 1);
@@ -153,23 +153,23 @@ TEST_SUITE("pty_emulator") {
     EmulatorOptions options;
     options.link = folder.path() / "file";
     std::ofstream(options.link) << "precious";
-    const auto over_file = GloveEmulator::open(options);
+    const auto over_file = DeviceEmulator::open(options);
     REQUIRE_FALSE(over_file);
     CHECK(over_file.error().code == Errc::failed);
     CHECK(over_file.error().message.find("not a link") != std::string::npos);
     CHECK(fs::file_size(options.link) == 8);
 
     options.link = folder.path();
-    CHECK_FALSE(GloveEmulator::open(options));
+    CHECK_FALSE(DeviceEmulator::open(options));
     options.link = folder.path() / "missing/glove";
-    const auto nowhere = GloveEmulator::open(options);
+    const auto nowhere = DeviceEmulator::open(options);
     REQUIRE_FALSE(nowhere);
     CHECK(nowhere.error().message.find("there is no folder") != std::string::npos);
   }
 
   TEST_CASE("wrong options are usage errors") {
     const auto code = [](const EmulatorOptions& options) {
-      const auto emulator = GloveEmulator::open(options);
+      const auto emulator = DeviceEmulator::open(options);
       REQUIRE_FALSE(emulator);
       return emulator.error().code;
     };

@@ -151,12 +151,12 @@ TEST_SUITE("pty_faults") {
 
   TEST_CASE("wrong faults, files and gloves are refused in one line that names them") {
     const auto error = [](const EmulatorOptions& options) {
-      const auto emulator = GloveEmulator::open(options);
+      const auto emulator = DeviceEmulator::open(options);
       REQUIRE_FALSE(emulator);
       return emulator.error();
     };
     EmulatorOptions options;
-    options.glove = "mitten";
+    options.device = "mitten";
     CHECK(error(options).message.find("mitten") != std::string::npos);
     options = {};
     options.faults = {"unplug@1s+1s"};

@@ -101,7 +101,7 @@ double latency_s(const emulator::EmulatorOptions& glove, const std::string& kind
   emulator::EmulatorOptions emulated = glove;
   emulated.log = (folder.path() / "traffic").string();
   emulated.motion = "rest";
-  auto unit = emulator::GloveEmulator::open(emulated);
+  auto unit = emulator::DeviceEmulator::open(emulated);
   REQUIRE(unit);
   const emulator::ServedEmulator served(**unit);
   const deform::Mesh ball = test::sphere(24, 48, 1.0);
@@ -151,7 +151,7 @@ TEST_SUITE("touch_feedback") {
 
   TEST_CASE("LucidGloves brake within 0.3 s of a touch") {
     emulator::EmulatorOptions glove;
-    glove.glove = "lucidgloves";
+    glove.device = "lucidgloves";
     check_latency(glove, "lucidgloves", brakes);
   }
 }

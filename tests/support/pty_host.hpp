@@ -26,7 +26,7 @@ namespace nendo::test {
 class ServedEmulator {
 public:
   explicit ServedEmulator(const emulator::EmulatorOptions& options = {}) {
-    emulator_ = required(emulator::GloveEmulator::open(options));
+    emulator_ = required(emulator::DeviceEmulator::open(options));
     thread_ = std::thread([this] { good_ = static_cast<bool>(emulator_->serve(stop_)); });
   }
   ServedEmulator(const ServedEmulator&) = delete;
@@ -39,10 +39,10 @@ public:
     thread_.join();
     CHECK(good_);
   }
-  const emulator::GloveEmulator* operator->() const { return emulator_.get(); }
+  const emulator::DeviceEmulator* operator->() const { return emulator_.get(); }
 
 private:
-  std::unique_ptr<emulator::GloveEmulator> emulator_;
+  std::unique_ptr<emulator::DeviceEmulator> emulator_;
   std::atomic<bool> stop_{false};
   std::atomic<bool> good_{false};
   std::thread thread_;

@@ -113,7 +113,7 @@ Result<FaultOutcome> run_case(const FaultCase& fault, const GloveCase& glove, do
   FaultOutcome outcome;
   outcome.fault = &fault;
   outcome.glove = &glove;
-  auto emulator = emulator::GloveEmulator::open(emulator_options(fault, glove, link));
+  auto emulator = emulator::DeviceEmulator::open(emulator_options(fault, glove, link));
   if (!emulator) return emulator.error();
   emulator::ServedEmulator server(**emulator);
   SampleRing ring(4096);

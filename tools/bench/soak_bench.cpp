@@ -67,7 +67,7 @@ Result<Tally> soak(const Options& options) {
   device.cyberglove.pattern = true;
   device.pace = emulator::EmulatorPace::host;
   device.faults = options.faults;
-  auto emulator = emulator::GloveEmulator::open(device);
+  auto emulator = emulator::DeviceEmulator::open(device);
   if (!emulator) return emulator.error();
   emulator::ServedEmulator server(**emulator);
   SampleRing ring(1U << 16U);

@@ -41,7 +41,12 @@ constexpr std::array<Row, fault_kinds> rows{{
     {"unplug", "unplug@5s+2s[=LINK]",
      "the terminal vanishes; 2 s later there is another, at LINK or the same link", false,
      Part::required, Part::optional},
-    {"eg", "eg@5s+2s", "the glove is pulled out of its unit for 2 s", false, Part::required, {}},
+    {"eg",
+     "eg@5s+2s",
+     "the glove, or a tracker's receivers, are pulled out of the unit for 2 s",
+     false,
+     Part::required,
+     {}},
     {"swap", "swap@5s[+2s]=WHAT",
      "the glove is pulled and after 2 s (0.5 s) another plugged in: 18, 22, left or right", false,
      Part::optional, Part::required},
@@ -56,10 +61,16 @@ constexpr std::array<Row, fault_kinds> rows{{
      Part::optional, Part::required},
     {"press",
      "press@5s+2s",
-     "no fault: the switch at the wrist is on for 2 s",
+     "no fault: the switch at the wrist, or a stylus' button, is on for 2 s",
      false,
      Part::required,
      {}},
+    {"error",
+     "error@5s=[STATION:]LETTER",
+     "a tracker's records of a station, or of all, carry this error letter until its test",
+     false,
+     {},
+     Part::required},
 }};
 
 std::optional<double> number(std::string_view text) {
@@ -132,6 +143,22 @@ std::optional<Incident> stuck_sensor(std::string_view text) {
   return incident;
 }
 
+/// Reads [STATION:]LETTER.
+std::optional<Incident> tracker_error(std::string_view text) {
+  Incident incident{Incident::Kind::tracker_error};
+  if (const std::size_t colon = text.find(':'); colon != std::string_view::npos) {
+    const auto station = number_in<unsigned>(text.substr(0, colon));
+    if (!station || *station == 0) return std::nullopt;
+    incident.station = *station;
+    text.remove_prefix(colon + 1);
+  }
+  const bool is_letter = text.size() == 1 &&
+                         ((text[0] >= 'a' && text[0] <= 'z') || (text[0] >= 'A' && text[0] <= 'Z'));
+  if (!is_letter) return std::nullopt;
+  incident.letter = text[0];
+  return incident;
+}
+
 } // namespace
 
 std::string_view name_of(FaultKind kind) noexcept {
@@ -146,6 +173,7 @@ std::optional<Incident> incident_of(const Fault& fault, bool over) {
     if (stuck && over) stuck->kind = Kind::sensor_free;
     return stuck;
   }
+  if (fault.kind == FaultKind::error) return tracker_error(fault.value);
   if (fault.kind == FaultKind::press) return Incident{over ? Kind::switch_off : Kind::switch_on};
   if (fault.kind != FaultKind::eg && fault.kind != FaultKind::swap) return std::nullopt;
   Incident incident{over ? Kind::glove_in : Kind::glove_out};
@@ -201,6 +229,8 @@ Result<Fault> parse_fault(std::string_view text) {
   if (fault->kind == FaultKind::stick && !stuck_sensor(fault->value))
     return wrong("stick=SENSOR[:COUNT]: a sensor's name, as index_pip, or its slot, 0 to 23, and a "
                  "count of 0 to 255");
+  if (fault->kind == FaultKind::error && !tracker_error(fault->value))
+    return wrong("error=[STATION:]LETTER: a letter, and a station from 1, as in error@5s=2:k");
   return *fault;
 }
 

@@ -32,8 +32,9 @@ enum class FaultKind : std::uint8_t {
   restart, ///< the unit's power fails for a moment
   stick,   ///< a sensor stops: `value` is its name or slot, and a count after a colon
   press,   ///< no fault: the switch at the wrist is pressed
+  error,   ///< a tracker's station reports an error: `value` is its letter, or STATION:LETTER
 };
-inline constexpr std::size_t fault_kinds = 13;
+inline constexpr std::size_t fault_kinds = 14;
 
 struct Fault {
   FaultKind kind = FaultKind::drop;

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <random>
 #include <span>
 #include <string>
 #include <system_error>
@@ -48,6 +49,20 @@ constexpr int max_records_per_turn = 256;
 
 // Max wait at the end for a host that reads nothing.
 constexpr auto max_last_wait = 300ms;
+
+/// Returns the rate that a terminal's speed stands for; 0 if no emulated unit has it.
+unsigned baud_of(speed_t speed) noexcept {
+  constexpr std::array<std::pair<speed_t, unsigned>, 7> speeds{{{B2400, 2400},
+                                                                {B4800, 4800},
+                                                                {B9600, 9600},
+                                                                {B19200, 19200},
+                                                                {B38400, 38400},
+                                                                {B57600, 57600},
+                                                                {B115200, 115200}}};
+  const auto* const found = std::find_if(speeds.begin(), speeds.end(),
+                                         [speed](const auto& s) { return s.first == speed; });
+  return found == speeds.end() ? 0 : found->second;
+}
 
 /// A symbolic link. The destructor removes it, unless it leads elsewhere by then.
 class SymbolicLink {
@@ -152,7 +167,7 @@ struct Parts {
   PseudoTerminal terminal;
 };
 
-class PtyEmulator final : public GloveEmulator {
+class PtyEmulator final : public DeviceEmulator {
 public:
   explicit PtyEmulator(Parts parts)
       : options_(std::move(parts.options)), unit_(std::move(parts.unit)),
@@ -261,14 +276,30 @@ private:
     }
     if (wire_.size() >= wire_full) return;
     const std::size_t bytes = output.size();
+    const bool garbled = bytes > 0 && rates_differ();
     for (const UnitMessage& message : unit_->messages()) {
       const std::size_t before = wire_.size();
       injector_.pass(output.first(message.bytes), message.record, now_, wire_);
       output = output.subspan(message.bytes);
       if (wire_.size() == before) continue;
+      if (garbled) garble(std::span(wire_).subspan(before));
       log_.sent(now_, message.record ? "record" : "reply", std::span(wire_).subspan(before));
     }
     unit_->take(bytes);
+  }
+
+  // Returns whether the host has set its end to another rate than the unit's. Both then see bytes
+  // without a stop bit in its place.
+  bool rates_differ() const {
+    const unsigned baud = unit_->baud();
+    termios host{};
+    if (baud == 0 || !terminal_ || ::tcgetattr(terminal_->fd(), &host) != 0) return false;
+    return baud_of(::cfgetospeed(&host)) != baud;
+  }
+
+  void garble(std::span<std::byte> bytes) {
+    for (std::byte& byte : bytes)
+      byte = static_cast<std::byte>(garbage_() & 0xFFU);
   }
 
   void write() {
@@ -342,7 +373,7 @@ private:
       received_ += bytes.size();
       advance_clock();
       log_.received(now_, bytes);
-      unit_->receive(bytes, now_);
+      if (!rates_differ()) unit_->receive(bytes, now_); // else it finds errors of framing only
       return {};
     }
     // EIO: the host has closed the terminal. There will be another.
@@ -378,6 +409,7 @@ private:
   HostTime replugged_at_{};
   std::vector<FaultKind> asked_;
   FaultInjector::Wire wire_; ///< what the terminal has not taken yet
+  std::minstd_rand garbage_; ///< what a host at another rate receives
   Time now_{};               ///< the unit's time
   HostTime last_turn_{};
   bool host_present_ = false;
@@ -394,7 +426,9 @@ Result<void> check_faults(const EmulatorOptions& options, const EmulatedKind& ki
                           const std::vector<Fault>& faults) {
   for (const Fault& fault : faults) {
     const std::string name = "fault " + std::string(name_of(fault.kind)) + ": ";
-    if (incident_of(fault, false) && !kind.takes_incidents) {
+    const auto incident = incident_of(fault, false);
+    const bool is_swap = fault.kind == FaultKind::swap && kind.type != DeviceType::glove;
+    if (incident && (is_swap || !kind.incidents.has(incident->kind))) {
       return Error{Errc::usage, name + "an emulated " + std::string(kind.name) + " has none"};
     }
     if (fault.kind == FaultKind::unplug && options.link.empty()) {
@@ -406,8 +440,8 @@ Result<void> check_faults(const EmulatorOptions& options, const EmulatedKind& ki
 
 } // namespace
 
-Result<std::unique_ptr<GloveEmulator>> GloveEmulator::open(const EmulatorOptions& options) {
-  const auto kind = find_emulated_kind(options.glove);
+Result<std::unique_ptr<DeviceEmulator>> DeviceEmulator::open(const EmulatorOptions& options) {
+  const auto kind = find_emulated_kind(options.device);
   if (!kind) return kind.error();
   auto faults = parse_faults(options.faults);
   if (!faults) return faults.error();
@@ -418,7 +452,7 @@ Result<std::unique_ptr<GloveEmulator>> GloveEmulator::open(const EmulatorOptions
   if (!log) return log.error();
   auto terminal = PseudoTerminal::make(options.link);
   if (!terminal) return terminal.error();
-  return std::unique_ptr<GloveEmulator>(std::make_unique<PtyEmulator>(
+  return std::unique_ptr<DeviceEmulator>(std::make_unique<PtyEmulator>(
       Parts{options, *std::move(unit), *std::move(faults), *std::move(log), *std::move(terminal)}));
 }
 

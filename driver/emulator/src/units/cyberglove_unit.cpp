@@ -88,6 +88,8 @@ void CyberGloveUnit::inject(const Incident& incident, Time now) {
     settings_.switch_on = incident.kind == Incident::Kind::switch_on;
     if (settings_.switch_drives_light) settings_.light = settings_.switch_on;
     break;
+  case Incident::Kind::tracker_error:
+    break;
   }
 }
 

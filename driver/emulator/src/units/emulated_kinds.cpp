@@ -1,5 +1,6 @@
-// The table of the gloves that can be emulated, and of their variants.
+// The table of the devices that can be emulated, and of the gloves' variants.
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include "units/capture.hpp"
 #include "units/cyberglove_unit.hpp"
 #include "units/emulated_unit.hpp"
+#include "units/fastrak_unit.hpp"
 #include "units/fivedt_unit.hpp"
 #include "units/forte_unit.hpp"
 #include "units/lucidgloves_unit.hpp"
@@ -58,15 +60,19 @@ Result<std::size_t> find_variant(const std::string& glove, std::string_view opti
                                 (names.empty() ? " has no choice of it" : " has one of " + names)};
 }
 
+Result<driver::Motion> find_hand_motion(const std::string& name) {
+  return driver::find_motion(name.empty() ? "sculpt" : name);
+}
+
 /// The places of the chosen variants.
 struct Chosen {
   std::size_t firmware = 0;
   std::size_t connection = 0;
 };
 Result<Chosen> find_variants(const EmulatorOptions& options) {
-  const auto firmware = find_variant(options.glove, "firmware", options.firmware);
+  const auto firmware = find_variant(options.device, "firmware", options.firmware);
   if (!firmware) return firmware.error();
-  const auto connection = find_variant(options.glove, "connection", options.connection);
+  const auto connection = find_variant(options.device, "connection", options.connection);
   if (!connection) return connection.error();
   return Chosen{*firmware, *connection};
 }
@@ -90,14 +96,14 @@ double choose(const Chosen& chosen, ForteUnitOptions& unit) {
 /// Makes a unit of the options that every kind has.
 template <class Unit, class UnitOptions>
 Result<std::unique_ptr<EmulatedUnit>> make_unit(const EmulatorOptions& options) {
-  const auto motion = driver::find_motion(options.motion);
+  const auto motion = find_hand_motion(options.motion);
   if (!motion) return motion.error();
   const auto chosen = find_variants(options);
   if (!chosen) return chosen.error();
   UnitOptions unit;
   const double max_rate_hz = choose(*chosen, unit);
   if (!(options.rate_hz >= 1.0 && options.rate_hz <= max_rate_hz)) {
-    return Error{Errc::usage, "rate: a " + options.glove + " glove sends 1 to " +
+    return Error{Errc::usage, "rate: a " + options.device + " glove sends 1 to " +
                                   std::to_string(static_cast<int>(max_rate_hz)) +
                                   " records per second"};
   }
@@ -145,7 +151,7 @@ Result<void> check_cyberglove(const EmulatorOptions& options) {
 Result<std::unique_ptr<EmulatedUnit>> make_cyberglove(const EmulatorOptions& options) {
   if (const auto chosen = find_variants(options); !chosen) return chosen.error();
   if (auto checked = check_cyberglove(options); !checked) return checked.error();
-  const auto motion = driver::find_motion(options.motion);
+  const auto motion = find_hand_motion(options.motion);
   if (!motion) return motion.error();
   UnitOptions unit{options.cyberglove,
                    options.side,
@@ -162,20 +168,55 @@ Result<std::unique_ptr<EmulatedUnit>> make_cyberglove(const EmulatorOptions& opt
   return std::unique_ptr<EmulatedUnit>(std::make_unique<CyberGloveUnit>(unit));
 }
 
+Result<std::unique_ptr<EmulatedUnit>> make_fastrak(const EmulatorOptions& options) {
+  if (const auto chosen = find_variants(options); !chosen) return chosen.error();
+  const auto motion = driver::find_wrist_motion(options.motion.empty() ? "orbit" : options.motion);
+  if (!motion) return motion.error();
+  const EmulatedTracker& tracker = options.tracker;
+  fastrak::FastrakUnitOptions unit;
+  unit.plugged.fill(false);
+  for (const unsigned station : tracker.stations) {
+    if (station < 1 || station > fastrak::max_stations)
+      return usage("stations: a FASTRAK has the stations 1 to 4");
+    unit.plugged[station - 1] = true;
+  }
+  constexpr std::array<unsigned, 7> rates{2400, 4800, 9600, 19200, 38400, 57600, 115200};
+  if (std::find(rates.begin(), rates.end(), tracker.baud) == rates.end())
+    return usage("baud: use 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
+  if (!(tracker.restart_s >= 0.0 && tracker.restart_s <= 60.0))
+    return usage("restart-time: use 0s to 60s");
+  unit.motion = *motion;
+  unit.seed = options.seed;
+  unit.noise = tracker.noise;
+  unit.baud = tracker.baud;
+  unit.restart_s = tracker.restart_s;
+  return std::unique_ptr<EmulatedUnit>(std::make_unique<fastrak::FastrakUnit>(unit));
+}
+
+using Happens = Incident::Kind;
+constexpr IncidentSet cyberglove_incidents{
+    Happens::glove_out,  Happens::glove_in,     Happens::power_cycle, Happens::switch_on,
+    Happens::switch_off, Happens::sensor_stuck, Happens::sensor_free};
+constexpr IncidentSet fastrak_incidents{Happens::glove_out,   Happens::glove_in,
+                                        Happens::power_cycle, Happens::switch_on,
+                                        Happens::switch_off,  Happens::tracker_error};
+
 constexpr std::array kinds{
-    EmulatedKind{"cyberglove", make_cyberglove, true},
-    EmulatedKind{"lucidgloves", make_unit<LucidGlovesUnit, LucidGlovesUnitOptions>, false},
-    EmulatedKind{"5dt", make_unit<FiveDtUnit, FiveDtUnitOptions>, false},
-    EmulatedKind{"forte", make_unit<ForteUnit, ForteUnitOptions>, false},
+    EmulatedKind{"cyberglove", DeviceType::glove, make_cyberglove, cyberglove_incidents},
+    EmulatedKind{
+        "lucidgloves", DeviceType::glove, make_unit<LucidGlovesUnit, LucidGlovesUnitOptions>, {}},
+    EmulatedKind{"5dt", DeviceType::glove, make_unit<FiveDtUnit, FiveDtUnitOptions>, {}},
+    EmulatedKind{"forte", DeviceType::glove, make_unit<ForteUnit, ForteUnitOptions>, {}},
+    EmulatedKind{"fastrak", DeviceType::tracker, make_fastrak, fastrak_incidents},
 };
 
 } // namespace
 
-std::vector<std::string_view> emulated_glove_names() {
-  std::vector<std::string_view> names;
+std::vector<EmulatedDevice> emulated_devices() {
+  std::vector<EmulatedDevice> devices;
   for (const EmulatedKind& kind : kinds)
-    names.push_back(kind.name);
-  return names;
+    devices.push_back({kind.name, kind.type});
+  return devices;
 }
 
 std::vector<EmulatedVariant> emulated_variants() {
@@ -189,7 +230,7 @@ Result<EmulatedKind> find_emulated_kind(std::string_view name) {
     names.append(names.empty() ? "" : ", ").append(kind.name);
   }
   return Error{Errc::usage,
-               "glove \"" + std::string(name) + "\" cannot be emulated; there is " + names};
+               "device \"" + std::string(name) + "\" cannot be emulated; there is " + names};
 }
 
 } // namespace nendo::emulator

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,13 +30,16 @@ struct Incident {
     switch_on,
     switch_off,
     sensor_stuck,
-    sensor_free
+    sensor_free,
+    tracker_error
   };
   Kind kind = Kind::glove_out;
   unsigned sensors = 0; ///< glove_in: of another glove; 0: as before
   std::optional<Side> side = std::nullopt;
   Sensor sensor = Sensor::unused;                    ///< that is stuck, or free again
   std::optional<std::uint16_t> count = std::nullopt; ///< at most 255; nothing: its own count
+  char letter = ' ';                                 ///< tracker_error: as its records have it
+  unsigned station = 0;                              ///< tracker_error: of this one; 0: of all
 };
 
 /// A whole record or reply in the output.
@@ -67,8 +71,10 @@ public:
   virtual void advance(Time now) = 0;
   /// Returns when advance() will have something to do; nothing if only the host can cause that.
   virtual std::optional<Time> next_due() const noexcept = 0;
-  /// Lets an incident happen. A unit whose glove cannot be pulled or swapped ignores it.
+  /// Lets an incident happen. A unit ignores those that its kind does not have.
   virtual void inject(const Incident& incident, Time now) { (void)incident, (void)now; }
+  /// Returns the rate of its serial line; 0: it understands hosts of any rate.
+  virtual unsigned baud() const noexcept { return 0; }
 
   /// Returns the bytes that wait for the host, at most output_capacity.
   std::span<const std::byte> output() const noexcept { return {output_.data(), output_size_}; }
@@ -131,11 +137,27 @@ private:
   std::vector<UnitMessage> messages_;
 };
 
-/// A kind of glove that can be emulated: a line in the table of emulated_kinds.cpp.
+/// A set of kinds of incidents.
+class IncidentSet {
+public:
+  constexpr IncidentSet(std::initializer_list<Incident::Kind> kinds) noexcept {
+    for (const Incident::Kind kind : kinds)
+      bits_ |= 1U << static_cast<unsigned>(kind);
+  }
+  constexpr bool has(Incident::Kind kind) const noexcept {
+    return ((bits_ >> static_cast<unsigned>(kind)) & 1U) != 0;
+  }
+
+private:
+  unsigned bits_ = 0;
+};
+
+/// A kind of device that can be emulated: a line in the table of emulated_kinds.cpp.
 struct EmulatedKind {
   std::string_view name;
+  DeviceType type;
   Result<std::unique_ptr<EmulatedUnit>> (*make)(const EmulatorOptions& options);
-  bool takes_incidents; ///< its glove can be pulled and swapped
+  IncidentSet incidents; ///< that can happen to it
 };
 
 /// Returns the kind of that name. Error: usage, naming those there are.

@@ -1,7 +1,7 @@
 #pragma once
-// Emulates a data glove's electronics on a pseudo-terminal. It was written from the published facts
-// of each protocol and not from the driver's parser, so that each can test the other. Users test
-// their own software against it, with the faults of real lines and real people.
+// Emulates the electronics of a data glove or a tracker on a pseudo-terminal. It was written from
+// the published facts of each protocol and not from the driver's parser, so that each can test the
+// other. Users test their own software against it, with the faults of real lines and real people.
 
 #include <array>
 #include <atomic>
@@ -17,8 +17,14 @@
 
 namespace nendo::emulator {
 
-/// Returns the names that EmulatorOptions::glove may have.
-std::vector<std::string_view> emulated_glove_names();
+enum class DeviceType : std::uint8_t { glove, tracker };
+
+/// A name that EmulatorOptions::device may have.
+struct EmulatedDevice {
+  std::string_view name;
+  DeviceType type = DeviceType::glove;
+};
+std::vector<EmulatedDevice> emulated_devices();
 
 /// A value that EmulatorOptions::firmware or ::connection may have, for which glove, and what a
 /// glove like that does. The first one of each glove and option is the default.
@@ -71,20 +77,32 @@ struct EmulatedCyberGlove {
   std::function<std::array<double, sensor_slots>(double time_s)> played = {};
 };
 
+/// Options for trackers only.
+struct EmulatedTracker {
+  std::vector<unsigned> stations{1, 2}; ///< into which receivers are plugged, from 1
+  bool noise = false;                   ///< the device's own noise, instead of exact poses
+  /// The rate of its serial line. A host at another one receives garbage and is not heard.
+  unsigned baud = 115200;
+  double restart_s = 10.0; ///< until it hears again after a restart: 0 to 60
+};
+
 struct EmulatorOptions {
-  std::string glove = "cyberglove";
-  std::string firmware = {};   ///< one of emulated_variants(); empty: the default
-  std::string connection = {}; ///< one of emulated_variants(); empty: the default
-  std::string link = {};       ///< path of the symbolic link to make to the terminal; empty: none
+  std::string device = "cyberglove"; ///< one of emulated_devices()
+  std::string firmware = {};         ///< one of emulated_variants(); empty: the default
+  std::string connection = {};       ///< one of emulated_variants(); empty: the default
+  std::string link = {}; ///< path of the symbolic link to make to the terminal; empty: none
   Side side = Side::right;
-  unsigned sensors = 0;          ///< 0: as many as this kind of glove usually has
-  std::string motion = "sculpt"; ///< one of driver::motion_names()
-  double rate_hz = 90.0;         ///< records per second until the host sets a period
+  unsigned sensors = 0; ///< 0: as many as this kind of glove usually has
+  /// One of driver::motion_names(), or of a tracker driver::wrist_motion_names(); empty: sculpt, or
+  /// orbit.
+  std::string motion = {};
+  double rate_hz = 90.0; ///< records of a glove per second until the host sets a period
   std::uint32_t seed = 1;
   EmulatorPace pace = EmulatorPace::clock;
   std::vector<std::string> faults = {}; ///< each in one of the forms of fault_forms()
   std::string log = {};                 ///< a file to write all traffic to; empty: none
   EmulatedCyberGlove cyberglove = {};
+  EmulatedTracker tracker = {};
 };
 
 struct FaultCount {
@@ -101,17 +119,17 @@ struct EmulatorStats {
   std::vector<FaultCount> faults = {}; ///< one for each kind in EmulatorOptions::faults
 };
 
-class GloveEmulator {
+class DeviceEmulator {
 public:
   /// Makes the pseudo-terminal and the link. Errors: usage (an option), bad_input (the file to
   /// replay), failed (the link's place is taken by something that is not a link, or link or log
   /// cannot be written).
-  static Result<std::unique_ptr<GloveEmulator>> open(const EmulatorOptions& options);
+  static Result<std::unique_ptr<DeviceEmulator>> open(const EmulatorOptions& options);
 
-  GloveEmulator() = default;
-  GloveEmulator(const GloveEmulator&) = delete;
-  GloveEmulator& operator=(const GloveEmulator&) = delete;
-  virtual ~GloveEmulator() = default; ///< removes the link
+  DeviceEmulator() = default;
+  DeviceEmulator(const DeviceEmulator&) = delete;
+  DeviceEmulator& operator=(const DeviceEmulator&) = delete;
+  virtual ~DeviceEmulator() = default; ///< removes the link
 
   /// Returns the terminal that a host opens at first, e.g. /dev/pts/4. After the fault `unplug`
   /// there is another one, which the link leads to.

@@ -11,7 +11,7 @@ namespace nendo::emulator {
 class ServedEmulator {
 public:
   /// `emulator` must outlive this.
-  explicit ServedEmulator(GloveEmulator& emulator)
+  explicit ServedEmulator(DeviceEmulator& emulator)
       : thread_([this, &emulator] {
           served_ = emulator.serve(over_);
           over_ = true; // nothing waits for an emulator that has failed
