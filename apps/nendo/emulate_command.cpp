@@ -1,18 +1,23 @@
-// nendo emulate: emulates a data glove's electronics on a pseudo-terminal, with chosen faults.
+// nendo emulate: emulates the electronics of a data glove or a tracker on a pseudo-terminal, with
+// chosen faults.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 
 #include <nendo/base/number_in.hpp>
-#include <nendo/driver/simulated_glove.hpp>
+#include <nendo/base/text.hpp>
 #include <nendo/emulator/emulator.hpp>
 #include <nendo/emulator/served_emulator.hpp>
 
@@ -27,7 +32,13 @@ namespace {
 
 struct Options {
   emulator::EmulatorOptions emulator;
+  std::string device;
+  std::string glove; ///< the same, by --glove
   std::string hand = "right";
+  std::string stations;
+  std::optional<double> restart_s;
+  std::string glove_option;   ///< the first option that was given and is for gloves only
+  std::string tracker_option; ///< the same for trackers
   std::string mask;
   std::string pace = "clock";
   std::string period_order = "msb";
@@ -75,7 +86,7 @@ Result<void> practise(Options& options) {
                               "and `nendo calibrate` needs time to record it"};
   if (options.hold_s > 0.0 && !poses) return Error{Errc::usage, "--hold: needs --motion poses"};
   if (!poses) return {};
-  if (emulator.glove != "cyberglove")
+  if (emulator.device != "cyberglove")
     return Error{Errc::usage, "--motion poses: needs an emulated cyberglove"};
   constexpr double usual_hold_s = 4.0;
   std::optional<double> hold_s;
@@ -106,7 +117,51 @@ bool follow_keys(const Options& options, int& shown) {
   return key != 'q';
 }
 
+/// Returns the type of a device; of an unknown one that of the options that were given with it, so
+/// that its name is what is refused.
+emulator::DeviceType type_of(const Options& options) {
+  const auto devices = emulator::emulated_devices();
+  const auto found = std::find_if(devices.begin(), devices.end(), [&](const auto& device) {
+    return device.name == options.emulator.device;
+  });
+  if (found != devices.end()) return found->type;
+  return options.tracker_option.empty() ? emulator::DeviceType::glove
+                                        : emulator::DeviceType::tracker;
+}
+
+/// Chooses the device, and refuses options that it does not have.
+Result<void> choose_device(Options& options) {
+  if (!options.device.empty() && !options.glove.empty() && options.device != options.glove)
+    return Error{Errc::usage, "--glove " + options.glove + ": the device is " + options.device +
+                                  " already; leave one of them out"};
+  std::string& device = options.emulator.device;
+  if (!options.glove.empty()) device = options.glove;
+  if (!options.device.empty()) device = options.device;
+  const bool is_tracker = type_of(options) == emulator::DeviceType::tracker;
+  const std::string& foreign = is_tracker ? options.glove_option : options.tracker_option;
+  if (foreign.empty()) return {};
+  return Error{Errc::usage, foreign + ": it is for " + (is_tracker ? "gloves" : "trackers") +
+                                ", and the device is a " + device + "; leave it out"};
+}
+
+Result<void> choose_stations(Options& options) {
+  if (options.stations.empty()) return {};
+  options.emulator.tracker.stations.clear();
+  for (ItemReader items(options.stations, ','); !items.has_ended();) {
+    const auto station = number_in<unsigned>(items.next());
+    if (!station)
+      return Error{Errc::usage, "--stations " + options.stations +
+                                    ": use numbers with commas between, such as 1,2"};
+    options.emulator.tracker.stations.push_back(*station);
+  }
+  return {};
+}
+
 Result<void> complete(Options& options) {
+  if (auto chosen = choose_device(options); !chosen) return chosen;
+  if (auto chosen = choose_stations(options); !chosen) return chosen;
+  if (options.restart_s)
+    options.emulator.cyberglove.restart_s = options.emulator.tracker.restart_s = *options.restart_s;
   const auto side = side_named(options.hand);
   if (!side) return Error{Errc::usage, "--hand " + options.hand + ": use left or right"};
   if (auto fine = cli::check_duration(options.duration_s); !fine) return fine;
@@ -147,7 +202,9 @@ int emulate(Options& options) {
   if (!emulator) return cli::report(emulator.error());
 
   cli::install_stop_signals();
-  std::cout << "emulating a " << options.hand << "-hand " << options.emulator.glove << " at "
+  const bool is_glove = type_of(options) == emulator::DeviceType::glove;
+  std::cout << "emulating a " << (is_glove ? options.hand + "-hand " : "")
+            << options.emulator.device << " at "
             << (options.emulator.link.empty() ? (*emulator)->tty_path() : options.emulator.link)
             << "; Ctrl-C ends it" << std::endl;
 
@@ -166,20 +223,48 @@ int emulate(Options& options) {
   return served ? 0 : cli::report(served.error());
 }
 
-void add_glove_options(cli::Command command, Options& options) {
+std::string device_names() {
+  std::vector<std::string_view> names;
+  for (const emulator::EmulatedDevice& device : emulator::emulated_devices())
+    names.push_back(device.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+void add_device_options(cli::Command command, Options& options) {
   emulator::EmulatorOptions& emulator = options.emulator;
   command.add_option(
-      "--glove", emulator.glove,
-      fmt::format("Its kind: {}", fmt::join(emulator::emulated_glove_names(), ", ")));
+      "--motion", emulator.motion,
+      fmt::format("What the hand does, by default sculpt: {}, or poses: those of "
+                  "nendo calibrate, in its order; in front of a tracker, by default orbit: {}",
+                  fmt::join(emulator::emulated_motions(emulator::DeviceType::glove), ", "),
+                  fmt::join(emulator::emulated_motions(emulator::DeviceType::tracker), ", ")));
+  command.add_option("--seed", emulator.seed, "Seed of motion, noise and faults");
+  command.add_option("--pace", options.pace, "clock: as a device; host: as fast as the host reads")
+      .one_of({"clock", "host"});
+  command.add_duration(
+      "--restart-time", options.restart_s,
+      "Duration of a restart of its firmware. CyberGlove: 0.2s, which the maker's library expects "
+      "(default), or 1.75s as in the manual; tracker: 10s");
+}
+
+void add_tracker_options(cli::Command command, Options& options) {
+  emulator::EmulatedTracker& tracker = options.emulator.tracker;
+  command.add_option("--stations", options.stations,
+                     "The stations that have receivers; 1,2 by default");
+  command.add_flag(
+      "--noise", tracker.noise,
+      "Its own noise, of a FASTRAK 0.8 mm and 0.15 degrees RMS, instead of exact poses");
+  command.add_option("--baud", tracker.baud,
+                     "The rate of its serial line; a host at another rate receives garbage");
+}
+
+void add_glove_options(cli::Command command, Options& options) {
+  emulator::EmulatorOptions& emulator = options.emulator;
   command.add_option("--firmware", emulator.firmware, "Its firmware, see below");
   command.add_option("--connection", emulator.connection, "Its connection, see below");
   command.add_option("--hand", options.hand, "left or right");
   command.add_option("--sensors", emulator.sensors,
                      "Number of sensors; a CyberGlove has 22 (default) or 18");
-  command.add_option("--motion", emulator.motion,
-                     fmt::format("What the hand does: {}, or poses: those of nendo calibrate, in "
-                                 "its order",
-                                 fmt::join(driver::motion_names(), ", ")));
   command.add_duration(
       "--hold", options.hold_s,
       "With --motion poses: how long each pose is held, after a free motion of 8 s, "
@@ -187,9 +272,6 @@ void add_glove_options(cli::Command command, Options& options) {
       "4 s");
   command.add_rate("--rate", emulator.rate_hz,
                    "Records per second until the host sets another rate");
-  command.add_option("--seed", emulator.seed, "Seed of motion, noise and faults");
-  command.add_option("--pace", options.pace, "clock: as a device; host: as fast as the host reads")
-      .one_of({"clock", "host"});
 }
 
 void add_cyberglove_options(cli::Command command, Options& options) {
@@ -212,10 +294,6 @@ void add_cyberglove_options(cli::Command command, Options& options) {
                   "Replies of a III. hardware: it echoes 1S, and the 0x03 that ends its stream, "
                   "without NUL, and counts sub-frames from 0; terminated: with NUL, and from 1")
       .one_of({"hardware", "terminated"});
-  command.add_duration(
-      "--restart-time", glove.restart_s,
-      "Duration of a restart of its firmware: 0.2s, which the maker's library expects, or "
-      "1.75s as in the manual");
   command.add_flag("--overrun", glove.overrun,
                    "Its first period is too short: each record of a stream reports es");
   command.add_flag("--streaming", glove.streaming,
@@ -232,8 +310,17 @@ void add_cyberglove_options(cli::Command command, Options& options) {
 void nendo::app::add_emulate(cli::Command& program) {
   using namespace emulate_command;
   cli::Command command = program.add_command(
-      "emulate", "Emulates a glove's electronics on a pseudo-terminal, for tests");
-  Options& options = command.on_chosen<Options>(emulate);
+      "emulate", "Emulates the electronics of a glove or tracker on a pseudo-terminal, for tests");
+  Options& options = command.on_chosen<Options>([command](Options& given) {
+    given.glove_option = command.first_given(
+        {"--firmware", "--connection", "--hand", "--sensors", "--hold", "--rate", "--model",
+         "--mask", "--touch", "--reply-bytes", "--period-order", "--stamp-bit7", "--hires-form",
+         "--overrun", "--streaming", "--pattern", "--replay"});
+    given.tracker_option = command.first_given({"--stations", "--noise", "--baud"});
+    return emulate(given);
+  });
+  command.add_option("DEVICE", options.device, device_names() + "; a cyberglove by default");
+  command.add_option("--glove", options.glove, "The same as DEVICE");
   command
       .add_option("--link", options.emulator.link,
                   "Symbolic link to make to the pseudo-terminal, e.g. /tmp/glove")
@@ -243,7 +330,9 @@ void nendo::app::add_emulate(cli::Command& program) {
   command.add_option("--fault", options.emulator.faults, "A fault, see below").once_each("FAULT");
   command.add_option("--log", options.emulator.log,
                      "Write all traffic to this file, one line per message");
-  add_glove_options(command.under("The glove"), options);
+  add_device_options(command.under("The device"), options);
+  add_glove_options(command.under("Gloves only"), options);
+  add_tracker_options(command.under("Trackers only"), options);
   add_cyberglove_options(command.under("CyberGlove only"), options);
   command.set_footer(variants_explained() + faults_explained());
 }

@@ -416,7 +416,7 @@ TEST_SUITE("fastrak_unit") {
     CHECK(bench.say("S") == status("3F3", "   ", '1'));
   }
 
-  TEST_CASE("XOFF stops the line, and XON lets it go on") {
+  TEST_CASE("the line stops at XOFF, and continues at XON") {
     Bench bench(with_stations(1));
     CHECK(bench.say("\x13S").empty());
     CHECK(bench.say("\x11") == status("3F0", "   ", '1'));

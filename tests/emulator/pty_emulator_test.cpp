@@ -21,8 +21,8 @@ namespace pty_emulator_test {
 
 using namespace std::chrono_literals;
 using nendo::Errc;
-using nendo::emulator::EmulatorOptions;
 using nendo::emulator::DeviceEmulator;
+using nendo::emulator::EmulatorOptions;
 using nendo::test::eventually;
 using nendo::test::PtyHost;
 using nendo::test::ServedEmulator;

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include <nendo/driver/simulated_glove.hpp>
+
 #include "units/capture.hpp"
 #include "units/cyberglove_unit.hpp"
 #include "units/emulated_unit.hpp"
@@ -217,6 +219,10 @@ std::vector<EmulatedDevice> emulated_devices() {
   for (const EmulatedKind& kind : kinds)
     devices.push_back({kind.name, kind.type});
   return devices;
+}
+
+std::vector<std::string_view> emulated_motions(DeviceType type) {
+  return type == DeviceType::glove ? driver::motion_names() : driver::wrist_motion_names();
 }
 
 std::vector<EmulatedVariant> emulated_variants() {

@@ -18,7 +18,7 @@ inline constexpr std::size_t max_record_bytes = 254;
 /// Returns the bytes of an item of the output list; nothing if there is no such item.
 std::optional<std::size_t> item_bytes(unsigned item, bool binary) noexcept;
 
-/// What a record tells.
+/// The content of a record.
 struct RecordContent {
   std::size_t station = 0; ///< from 0
   char error = ' ';

@@ -25,16 +25,16 @@ struct NumbersForm {
   bool has_station;
   bool is_length;
   bool is_whole;
-  double least;
-  double most;
+  double min;
+  double max;
 };
-constexpr double most_length = 999.99; // what a record in text can tell
-constexpr std::array number_forms{NumbersForm{'H', true, false, false, -most_length, most_length},
-                                  NumbersForm{'A', true, true, false, -most_length, most_length},
+constexpr double max_length = 999.99; // the largest number of a record in text
+constexpr std::array number_forms{NumbersForm{'H', true, false, false, -max_length, max_length},
+                                  NumbersForm{'A', true, true, false, -max_length, max_length},
                                   NumbersForm{'G', true, false, false, -180.0, 180.0},
                                   NumbersForm{'r', true, false, false, -180.0, 180.0},
-                                  NumbersForm{'N', true, true, false, -most_length, most_length},
-                                  NumbersForm{'I', true, true, false, 0.0, most_length},
+                                  NumbersForm{'N', true, true, false, -max_length, max_length},
+                                  NumbersForm{'I', true, true, false, 0.0, max_length},
                                   NumbersForm{'e', true, false, true, 0.0, 1.0},
                                   NumbersForm{'x', false, false, false, 0.0, 1.0},
                                   NumbersForm{'v', false, false, false, 0.0, 1.0},
@@ -100,14 +100,14 @@ struct Line {
   }
 };
 
-/// Reads a field as a whole number from `least` to `most`.
-std::optional<Problem> read_whole(const Line& line, std::size_t field, unsigned least,
-                                  unsigned most, unsigned& value) {
+/// Reads a field as a whole number from `min` to `max`.
+std::optional<Problem> read_whole(const Line& line, std::size_t field, unsigned min, unsigned max,
+                                  unsigned& value) {
   if (field >= line.fields.size() || line.fields[field].empty())
     return Problem{Wrong::field_missing, field};
   const auto number = to_finite_number(line.fields[field]);
   if (!number) return Problem{Wrong::no_number, field};
-  if (*number < least || *number > most || *number != std::floor(*number))
+  if (*number < min || *number > max || *number != std::floor(*number))
     return Problem{Wrong::out_of_range, field};
   value = static_cast<unsigned>(*number);
   return std::nullopt;
@@ -164,7 +164,7 @@ std::optional<Problem> change_numbers(Line& line, const NumbersForm& form, Setti
     if (line.fields[field].empty()) continue;
     const auto number = to_finite_number(line.fields[field]);
     if (!number) return Problem{Wrong::no_number, field};
-    if (*number < form.least || *number > form.most ||
+    if (*number < form.min || *number > form.max ||
         (form.is_whole && *number != std::floor(*number)))
       return Problem{Wrong::out_of_range, field};
     numbers[field - first] = *number * unit;

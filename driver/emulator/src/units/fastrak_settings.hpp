@@ -28,13 +28,14 @@ struct StationSettings {
   bool on = false;
   std::vector<unsigned> items{2, 4, 1}; ///< the output list
   Vector3 hemisphere{1, 0, 0};          ///< towards its zenith; 0 0 0: the hemisphere is tracked
-  double tracked_sign = 1.0;            ///< of the reported solution, while it is tracked
+  double tracked_sign = 1.0;            ///< sign of the reported solution, while it is tracked
   std::array<double, 1> increment_cm{}; ///< the least movement between two records of a stream
   std::array<double, 9> alignment_cm{0, 0, 0, 200, 0, 0, 0, 200, 0}; ///< origin, on x, on y
-  std::array<double, 3> reference_deg{};  ///< what the boresight makes of the present attitude
-  Rotation boresight = no_rotation;       ///< of the receiver's own axes
-  std::array<double, 3> mounting_deg{};   ///< of the transmitter
-  std::array<double, 3> tip_cm{};         ///< the offset of a stylus' tip
+  std::array<double, 3> reference_deg{}; ///< what the boresight makes of the present attitude
+  Rotation boresight = no_rotation;      ///< a turn of the receiver's own axes
+  std::array<double, 3>
+      mounting_deg{};             ///< how the transmitter is mounted: azimuth, elevation, roll
+  std::array<double, 3> tip_cm{}; ///< the offset of a stylus' tip
   std::array<double, 1> button_output{1}; ///< 1: the stylus' button starts and stops the stream
 
   /// Returns whether the unit takes the solution at -p for this receiver at p.

@@ -31,7 +31,7 @@ struct FastrakUnitOptions {
 
 class FastrakUnit final : public EmulatedUnit {
 public:
-  static constexpr std::uint64_t cycles_hz = 120; ///< of all stations together
+  static constexpr std::uint64_t cycles_hz = 120; ///< measurements of all stations together
   /// From the middle of a measurement until its solution is ready.
   static constexpr Time solution_delay{3'750'000};
 
@@ -89,7 +89,7 @@ private:
   bool receivers_out_ = false;
   bool button_ = false;
   std::optional<Time> restart_ends_;
-  std::optional<Time> origin_; ///< of motion and cycles; empty until time was seen to pass
+  std::optional<Time> origin_; ///< the zero of motion and cycles; empty until time was seen to pass
 };
 
 } // namespace nendo::emulator::fastrak

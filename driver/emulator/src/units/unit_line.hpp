@@ -52,7 +52,7 @@ public:
     waiting_bytes_ -= passed.bytes.size();
     return passed;
   }
-  /// Stops the line, or lets it go on: XOFF and XON.
+  /// Stops the line, or continues: XOFF and XON.
   void pause(bool paused) noexcept { paused_ = paused; }
   /// Forgets what waits, as when the unit restarts.
   void clear() noexcept {

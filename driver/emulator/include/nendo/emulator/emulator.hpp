@@ -26,6 +26,9 @@ struct EmulatedDevice {
 };
 std::vector<EmulatedDevice> emulated_devices();
 
+/// Returns the names that EmulatorOptions::motion may have.
+std::vector<std::string_view> emulated_motions(DeviceType type);
+
 /// A value that EmulatorOptions::firmware or ::connection may have, for which glove, and what a
 /// glove like that does. The first one of each glove and option is the default.
 struct EmulatedVariant {
@@ -93,8 +96,7 @@ struct EmulatorOptions {
   std::string link = {}; ///< path of the symbolic link to make to the terminal; empty: none
   Side side = Side::right;
   unsigned sensors = 0; ///< 0: as many as this kind of glove usually has
-  /// One of driver::motion_names(), or of a tracker driver::wrist_motion_names(); empty: sculpt, or
-  /// orbit.
+  /// One of emulated_motions(); empty: sculpt, or of a tracker orbit.
   std::string motion = {};
   double rate_hz = 90.0; ///< records of a glove per second until the host sets a period
   std::uint32_t seed = 1;
