@@ -42,6 +42,12 @@ TEST_SUITE("fault") {
     CHECK(slot->lasting == 2s);
     CHECK_FALSE(incident_of(*slot, false)->count);
     CHECK(incident_of(*slot, true)->kind == Incident::Kind::sensor_free);
+    const auto error = parse_fault("error@2s=3:k");
+    REQUIRE(error);
+    CHECK(incident_of(*error, false)->kind == Incident::Kind::tracker_error);
+    CHECK(incident_of(*error, false)->station == 3);
+    CHECK(incident_of(*error, false)->letter == 'k');
+    CHECK(incident_of(*parse_fault("error@2s=X"), false)->station == 0);
   }
 
   TEST_CASE("what is wrong gets one line that quotes the fault and shows how to write it") {
@@ -76,6 +82,13 @@ TEST_SUITE("fault") {
                                    "swap@5s+1s",
                                    "restart@5s+2s",
                                    "stick@5s",
+                                   "error@5s",
+                                   "error@5s=",
+                                   "error@5s=kk",
+                                   "error@5s=1",
+                                   "error@5s=0:k",
+                                   "error@5s=x:k",
+                                   "error@5s+2s=k",
                                    "stick@5s=",
                                    "stick@5s=index",
                                    "stick@5s=24",

@@ -166,6 +166,28 @@ TEST_SUITE("pty_faults") {
     CHECK(error(options).code == Errc::failed);
     CHECK(error(options).message.find("/no/such/folder/log") != std::string::npos);
     options = {};
+    options.device = "fastrak";
+    for (const std::string fault : {"swap@1s=18", "stick@1s=5"}) {
+      options.faults = {fault};
+      CHECK(error(options).message.find("fastrak has none") != std::string::npos);
+    }
+    options.faults = {};
+    options.motion = "sculpt";
+    CHECK(error(options).message.find("orbit") != std::string::npos);
+    options = {};
+    options.device = "fastrak";
+    options.tracker.stations = {5};
+    CHECK(error(options).message.find("1 to 4") != std::string::npos);
+    options.tracker = {};
+    options.tracker.baud = 12345;
+    CHECK(error(options).message.find("38400") != std::string::npos);
+    options.tracker = {};
+    options.tracker.restart_s = 61.0;
+    CHECK(error(options).message.find("restart-time") != std::string::npos);
+    options = {};
+    options.faults = {"error@1s=k"};
+    CHECK(error(options).message.find("cyberglove has none") != std::string::npos);
+    options = {};
     options.cyberglove.replay = "/no/such/file";
     CHECK(error(options).code == Errc::bad_input);
     options = {};

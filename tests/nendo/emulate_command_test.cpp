@@ -2,10 +2,12 @@
 #include <filesystem>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <doctest/doctest.h>
 
 #include "support/program.hpp"
+#include "support/pty_host.hpp"
 
 namespace emulate_command_test {
 
@@ -90,6 +92,54 @@ TEST_SUITE("emulate") {
       CAPTURE(c.glove);
       const auto done =
           nendo::test::nendo({"emulate", "--link", link, "--glove", c.glove, c.option, c.name});
+      CHECK(done.exit_code == 2);
+      CHECK(is_one_line_about(done.err, c.about));
+    }
+  }
+
+  TEST_CASE("a tracker answers under its link, with the faults of its line") {
+    const nendo::test::TemporaryFolder folder;
+    const auto link = folder.path() / "tracker";
+    nendo::test::Program emulator({"emulate", "fastrak", "--link", link.string(), "--stations",
+                                   "1,3", "--motion", "cross", "--noise", "--fault", "flip=5%"});
+    for (int turn = 0; turn < 2000 && !std::filesystem::exists(link); ++turn)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    {
+      nendo::test::PtyHost host(link.string());
+      host.send("C");
+      CHECK(host.receive(60 * 47).size() >= 60 * 47);
+    }
+    emulator.signal(SIGINT);
+    const auto done = emulator.wait();
+    CHECK(done.exit_code == 0);
+    CHECK(done.out.find("emulating a fastrak at " + link.string()) != std::string::npos);
+    CHECK(done.out.find("faults: flip ") != std::string::npos);
+  }
+
+  TEST_CASE("options of gloves and of trackers are refused for the other") {
+    const nendo::test::TemporaryFolder folder;
+    const std::string link = (folder.path() / "device").string();
+    using Arguments = std::vector<std::string>;
+    struct Case {
+      Arguments more;
+      std::string about;
+    };
+    for (const Case& c : {Case{{"fastrak", "--rate", "90"}, "--rate"},
+                          Case{{"fastrak", "--hand", "left"}, "--hand"},
+                          Case{{"--glove", "fastrak", "--pattern"}, "--pattern"},
+                          Case{{"--stations", "1"}, "--stations"},
+                          Case{{"lucidgloves", "--baud", "9600"}, "--baud"},
+                          Case{{"fastrak", "--glove", "forte"}, "--glove forte"},
+                          Case{{"fastrak", "--stations", "1;2"}, "--stations 1;2"},
+                          Case{{"fastrak", "--stations", "5"}, "stations"},
+                          Case{{"fastrak", "--baud", "1"}, "baud"},
+                          Case{{"fastrak", "--motion", "sculpt"}, "sculpt"},
+                          Case{{"fastrak", "--motion", "poses"}, "cyberglove"},
+                          Case{{"fastrak", "--firmware", "waiting"}, "--firmware"}}) {
+      CAPTURE(c.about);
+      Arguments arguments{"emulate", "--link", link};
+      arguments.insert(arguments.end(), c.more.begin(), c.more.end());
+      const auto done = nendo::test::nendo(arguments);
       CHECK(done.exit_code == 2);
       CHECK(is_one_line_about(done.err, c.about));
     }
