@@ -92,4 +92,15 @@ Result<std::unique_ptr<Tracker>> open_fastrak(const DeviceSpec& spec,
                                               std::span<const std::uint16_t> stations);
 
 } // namespace fastrak
+
+namespace vrpn {
+
+/// Opens `vrpn:NAME@HOST[:PORT][?up=y|z]`, a tracker of a VRPN server in the network, by TCP.
+/// `stations` are numbers of its sensors, from 0 on. `up` is the tracker's axis that points up. A
+/// sensor that sends nothing yet is a warning, since the server sends nothing of a body that it
+/// does not see.
+Result<std::unique_ptr<Tracker>> open_vrpn(const DeviceSpec& spec,
+                                           std::span<const std::uint16_t> stations);
+
+} // namespace vrpn
 } // namespace nendo::driver

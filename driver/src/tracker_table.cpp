@@ -22,12 +22,23 @@ Result<std::uint16_t> take_numbered_station(DeviceSpec& spec) {
   return Error{Errc::usage, spec.text + ": option station must be a whole number from 1 to 16"};
 }
 
+/// Takes the option `sensor=N`, a number of VRPN; 0 if it is missing.
+Result<std::uint16_t> take_sensor(DeviceSpec& spec) {
+  const auto option = spec.options.extract("sensor");
+  if (option.empty()) return std::uint16_t{0};
+  if (const auto sensor = number_in<std::uint16_t>(option.mapped())) return *sensor;
+  return Error{Errc::usage, spec.text + ": option sensor must be a whole number from 0 to 65535"};
+}
+
 constexpr std::array own_drivers{
     TrackerDriver{"sim", "sim[:MOTION][?station=N&rate=HZ&seed=N]", "a simulated tracker",
                   take_numbered_station, open_simulated_tracker},
     TrackerDriver{"fastrak", "fastrak:PATH[?station=N&baud=N&hemisphere=X,Y,Z&filter=on|off]",
                   "Polhemus FASTRAK, InterSense IS-300, IS-600, IS-900", take_numbered_station,
                   fastrak::open_fastrak},
+
+    TrackerDriver{"vrpn", "vrpn:NAME@HOST[:PORT][?sensor=N&up=y|z]",
+                  "a tracker of a VRPN server in the network", take_sensor, vrpn::open_vrpn},
 };
 
 Result<TrackerDriver> find_driver(const DeviceSpec& spec, std::span<const TrackerDriver> more) {

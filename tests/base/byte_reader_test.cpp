@@ -1,6 +1,8 @@
 #include <nendo/base/byte_reader.hpp>
 
 #include <array>
+#include <initializer_list>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -21,6 +23,23 @@ TEST_SUITE("byte_reader") {
     CHECK(reader.remaining() == 0);
     CHECK_FALSE(reader.overrun());
     CHECK(ByteReader(bytes).u24_le() == 0x030201U);
+  }
+
+  TEST_CASE("big-endian numbers are read most significant byte first") {
+    CHECK(ByteReader(bytes).u32_be() == 0x01020304U);
+    ByteReader reader(bytes);
+    CHECK(reader.u64_be() == 0x0102030485F60000U);
+    CHECK(reader.overrun());
+    const auto bytes_of = [](std::initializer_list<int> values) {
+      std::vector<std::byte> made;
+      for (const int value : values)
+        made.push_back(static_cast<std::byte>(value));
+      return made;
+    };
+    const auto minus_two = bytes_of({0xFF, 0xFF, 0xFF, 0xFE});
+    CHECK(ByteReader(minus_two).i32_be() == -2);
+    const auto one = bytes_of({0x3F, 0xF0, 0, 0, 0, 0, 0, 0}); // exponent 1023, no fraction
+    CHECK(ByteReader(one).f64_be() == 1.0);
   }
 
   TEST_CASE("reading past the end gives zeros and is remembered") {

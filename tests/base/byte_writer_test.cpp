@@ -33,6 +33,12 @@ TEST_SUITE("byte_writer") {
     CHECK(bytes == expected);
   }
 
+  TEST_CASE("big-endian numbers are most significant byte first") {
+    std::vector<std::byte> bytes;
+    ByteWriter(bytes).u32_be(0x01020384);
+    CHECK(bytes == std::vector{std::byte{0x01}, std::byte{0x02}, std::byte{0x03}, std::byte{0x84}});
+  }
+
   TEST_CASE("a reader reads back what was written, to the bit") {
     std::vector<std::byte> bytes;
     ByteWriter writer(bytes);

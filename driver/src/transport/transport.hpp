@@ -38,6 +38,9 @@ public:
   virtual void discard_input() noexcept = 0;
   /// Changes the line's rate. Returns false if the line has no rate, or not this one.
   virtual bool set_baud(int /*baud*/) noexcept { return false; }
+  /// Gives a connection up: from now on every call says `gone`, so that the reader connects again.
+  /// Does nothing at a port.
+  virtual void hang_up() noexcept {}
 };
 
 } // namespace nendo::driver

@@ -1,7 +1,7 @@
 #pragma once
-// Reads little-endian values from a span, with bounds checks. Bytes past the end read as zero and
-// set a sticky flag, overrun(), so that a decoder can read a whole layout and check once at the
-// end.
+// Reads little-endian and big-endian values from a span, with bounds checks. Bytes past the end
+// read as zero and set a sticky flag, overrun(), so that a decoder can read a whole layout and
+// check once at the end.
 
 #include <bit>
 #include <cstddef>
@@ -40,6 +40,18 @@ public:
   }
   constexpr std::int64_t i64_le() noexcept { return std::bit_cast<std::int64_t>(u64_le()); }
   constexpr double f64_le() noexcept { return std::bit_cast<double>(u64_le()); }
+  constexpr std::uint32_t u32_be() noexcept {
+    std::uint32_t value = 0;
+    for (int byte = 0; byte < 4; ++byte)
+      value = value << 8U | u8();
+    return value;
+  }
+  constexpr std::int32_t i32_be() noexcept { return std::bit_cast<std::int32_t>(u32_be()); }
+  constexpr std::uint64_t u64_be() noexcept {
+    const std::uint64_t high = u32_be();
+    return high << 32U | u32_be();
+  }
+  constexpr double f64_be() noexcept { return std::bit_cast<double>(u64_be()); }
   /// Reads a string that ByteWriter::text() wrote; it may hold any bytes. The view points into the
   /// input.
   std::string_view text() noexcept {

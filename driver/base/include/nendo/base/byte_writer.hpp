@@ -1,5 +1,5 @@
 #pragma once
-// Appends little-endian numbers and strings to a vector, for ByteReader to read.
+// Appends little-endian and big-endian numbers, and strings, to a vector, for ByteReader to read.
 
 #include <bit>
 #include <cstddef>
@@ -21,6 +21,10 @@ public:
   void u64_le(std::uint64_t value) { put(value, 8); }
   void i64_le(std::int64_t value) { u64_le(std::bit_cast<std::uint64_t>(value)); }
   void f64_le(double value) { u64_le(std::bit_cast<std::uint64_t>(value)); }
+  void u32_be(std::uint32_t value) {
+    for (const unsigned shift : {24U, 16U, 8U, 0U})
+      u8(static_cast<std::uint8_t>(value >> shift));
+  }
   void bytes(std::span<const std::byte> part) {
     out_->insert(out_->end(), part.begin(), part.end());
   }
