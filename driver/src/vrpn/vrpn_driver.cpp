@@ -123,10 +123,12 @@ public:
                                IdentifyReason reason, const ReplyDeadline& limit) override {
     parser_.deliver_poses(false);
     heard_.has_answered = false;
-    if (std::exchange(connection_, server_->connections()) != server_->connections()) {
+    const bool is_new = connection_ != server_->connections();
+    if (is_new) {
+      connection_ = server_->connections();
       if (auto met = meet(transport, limit); !met) return met.error();
     }
-    if (auto answered = ask(transport, limit); !answered) {
+    if (auto answered = ask(transport, limit, is_new); !answered) {
       transport.hang_up();
       return answered.error();
     }
@@ -233,10 +235,11 @@ private:
     return problem("takes no messages; is its program still running?");
   }
 
-  /// Pings the tracker until it answers.
-  Result<void> ask(Transport& transport, const ReplyDeadline& limit) {
-    for (int turn = 0; turn < pings && !heard_.has_answered; ++turn) {
+  /// Pings the tracker, until it answers or sends a pose.
+  Result<void> ask(Transport& transport, const ReplyDeadline& limit, bool is_new) {
+    for (int turn = 0; turn < pings; ++turn) {
       if (auto sent = send(transport, ping()); !sent) return sent;
+      if (heard_.has_answered) return {};
       const IoStatus status =
           listen(transport, limit, pong_time, [&](std::span<const std::byte> chunk) {
             hear(chunk);
@@ -244,8 +247,9 @@ private:
           });
       if (parser_.is_broken()) return unreadable();
       if (status == IoStatus::gone) return problem("closed the connection; is it restarted?");
+      if (heard_.has_answered) return {};
     }
-    if (heard_.has_answered) return {};
+    if (!is_new) return problem("does not answer any more; does its program still run?");
     return problem("knows the name " + in_quotes(place_.tracker) +
                    ", but no tracker there answers to it; is it started at the server? Names: " +
                    listed(heard_.names));

@@ -106,7 +106,7 @@ Parser::Kind Parser::kind_of(std::int32_t sender, std::int32_t type) const noexc
 }
 
 Parser::Finding Parser::end_header() noexcept {
-  ByteReader reader(std::span(message_).first(header_bytes));
+  ByteReader reader{std::span(message_).first(header_bytes)};
   const std::size_t length = reader.u32_be();
   header_.seconds = reader.u32_be();
   header_.microseconds = reader.u32_be();
