@@ -14,7 +14,7 @@ import time
 
 DESCRIBES_SENDER, DESCRIBES_TYPE, UDP_PORT = -1, -2, -3
 TYPES = ["vrpn_Base text_message", "vrpn_Base ping_message", "vrpn_Base pong_message", "vrpn_Tracker Pos_Quat",
-         "vrpn_Tracker Velocity", "vrpn_Tracker To_Room", "vrpn_Button Change"]
+         "vrpn_Tracker Velocity", "vrpn_Tracker Acceleration", "vrpn_Button Change"]
 
 
 def cookie_of(version):

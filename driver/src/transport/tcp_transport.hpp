@@ -35,7 +35,7 @@ public:
   /// in turn, for 1 s in all the first time, and 0.5 s later. Error: no_device, one line that names
   /// the host and the remedy.
   Result<std::unique_ptr<Transport>> connect();
-  /// Returns the number of connections so far, to tell a new one from the previous one.
+  /// Returns the number of connections so far, which changes with each new one.
   std::uint64_t connections() const noexcept { return connections_; }
   /// Returns "host:port" for messages.
   std::string name() const;

@@ -15,7 +15,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <nendo/base/number_in.hpp>
 #include <nendo/base/text.hpp>
 
 #include "drivers.hpp"
@@ -24,6 +23,7 @@
 #include "stream/stream_tracker.hpp"
 #include "transport/tcp_transport.hpp"
 #include "vrpn/vrpn_parser.hpp"
+#include "vrpn/vrpn_place.hpp"
 
 namespace nendo::driver::vrpn {
 namespace {
@@ -38,13 +38,6 @@ constexpr auto sensors_time = 400ms; ///< until each sensor that is seen has sen
 constexpr auto text_interval = 5s;   ///< between two messages of the server in the log
 constexpr std::size_t max_listed = 24;
 
-/// Which tracker of which server.
-struct Place {
-  std::string tracker;
-  std::string host;
-  std::uint16_t port = default_port;
-};
-
 /// The turn from axes with z up (x to the right, y to the front) to the stage's: -90 degrees
 /// about x.
 constexpr std::array<double, 4> stage_from_z_up_xyzw{-0.7071067811865476, 0, 0, 0.7071067811865476};
@@ -53,7 +46,7 @@ constexpr std::array<double, 4> stage_from_z_up_xyzw{-0.7071067811865476, 0, 0, 
 struct Heard {
   std::optional<std::string> greeting; ///< printable
   bool is_vrpn_7 = false;
-  std::vector<std::string> names;    ///< of the server's devices, printable; the first ones
+  std::vector<std::string> names;    ///< the server's devices, printable; the first ones
   bool has_answered = false;         ///< the tracker, by a pong or a pose
   std::vector<std::int32_t> sensors; ///< that sent poses; the first ones
 
@@ -156,9 +149,10 @@ public:
   }
 
   void push(std::span<const std::byte> chunk, HostTime arrival, Sink& sink) noexcept override {
-    parser_.push(chunk, FindingSink{[&](const Pose& pose) { deliver(pose, arrival, sink); },
-                                    [&](const Text& text) { texts_.log(source_, text, arrival); },
-                                    [&](BadRecord) { sink.reject(); }});
+    parser_.push(chunk,
+                 FindingSink{[&](const Pose& pose) { deliver(pose, arrival, sink); },
+                             [&](const Text& text) { text_log_.log(source_, text, arrival); },
+                             [&](BadRecord) { sink.reject(); }});
   }
 
   void answer(Transport& transport) noexcept override {
@@ -173,18 +167,19 @@ private:
   }
 
   void hear(std::span<const std::byte> chunk) {
-    parser_.push(
-        chunk, FindingSink{[&](const Greeting& greeting) {
-                             heard_.greeting = printable(greeting.text);
-                             heard_.is_vrpn_7 = greeting.is_vrpn_7;
-                           },
-                           [&](const SenderName& sender) { heard_.add_name(sender.name); },
-                           [&](const OtherPose& pose) {
-                             heard_.has_answered = true;
-                             heard_.add_sensor(pose.sensor);
-                           },
-                           [&](Pong) { heard_.has_answered = true; },
-                           [&](const Text& text) { texts_.log(source_, text, HostClock::now()); }});
+    parser_.push(chunk, FindingSink{[&](const Greeting& greeting) {
+                                      heard_.greeting = printable(greeting.text);
+                                      heard_.is_vrpn_7 = greeting.is_vrpn_7;
+                                    },
+                                    [&](const SenderName& sender) { heard_.add_name(sender.name); },
+                                    [&](const OtherPose& pose) {
+                                      heard_.has_answered = true;
+                                      heard_.add_sensor(pose.sensor);
+                                    },
+                                    [&](Pong) { heard_.has_answered = true; },
+                                    [&](const Text& text) {
+                                      text_log_.log(source_, text, HostClock::now());
+                                    }});
   }
 
   /// Greets a server that is newly connected, and waits for the tracker's name.
@@ -321,49 +316,11 @@ private:
   const bool z_up_;
   std::uint64_t connection_ = 0; ///< the number of the connection that was greeted
   Heard heard_;
-  TextLog texts_;
+  TextLog text_log_;
   Parser parser_;
   std::vector<DeviceClock> clocks_; ///< in the order of `sensors_`
   std::optional<std::chrono::nanoseconds> first_stamp_;
 };
-
-Error no_place(const DeviceSpec& spec, const std::string& what) {
-  return {Errc::usage, "\"" + spec.text + "\": " + what +
-                           "; e.g. vrpn:Tracker0@192.168.1.20, vrpn:Tracker0@lab:3883, "
-                           "vrpn:Tracker0@[fe80::1%eth0]"};
-}
-
-/// Splits HOST, HOST:PORT, [ADDRESS] or [ADDRESS]:PORT. Returns nothing if the text is none of
-/// them.
-std::optional<Place> server_in(std::string_view text) {
-  Place place;
-  const bool is_bracketed = text.starts_with('[');
-  const std::size_t host_end = is_bracketed ? text.find(']') : text.find(':');
-  place.host = text.substr(is_bracketed ? 1 : 0, host_end - (is_bracketed ? 1 : 0));
-  if (is_bracketed && host_end == std::string_view::npos) return std::nullopt;
-  std::string_view rest =
-      host_end == std::string_view::npos ? "" : text.substr(host_end + (is_bracketed ? 1 : 0));
-  if (place.host.empty()) return std::nullopt;
-  if (rest.empty()) return place;
-  const auto port = number_in<std::uint16_t>(rest.substr(1));
-  if (!rest.starts_with(':') || !port || *port == 0) return std::nullopt;
-  place.port = *port;
-  return place;
-}
-
-Result<Place> place_in(const DeviceSpec& spec) {
-  const std::string_view target = spec.target;
-  const std::size_t at = target.rfind('@');
-  if (at == std::string_view::npos || at == 0)
-    return no_place(spec, "name the tracker and its server");
-  if (at >= max_name_bytes) return no_place(spec, "names of VRPN have 99 characters at most");
-  auto place = server_in(target.substr(at + 1));
-  if (!place)
-    return no_place(spec, "after @ comes a host, or one with a port of 1 to 65535, or an address "
-                          "of IPv6 in brackets");
-  place->tracker = target.substr(0, at);
-  return *std::move(place);
-}
 
 } // namespace
 
@@ -372,7 +329,7 @@ Result<std::unique_ptr<Tracker>> open_vrpn(const DeviceSpec& spec,
   if (auto allowed = allow_options(spec, {"up"}); !allowed) return allowed.error();
   const auto up = word_option(spec, "up", {"y", "z"});
   if (!up) return up.error();
-  auto place = place_in(spec);
+  auto place = parse_place(spec);
   if (!place) return place.error();
   const HostTime deadline = HostClock::now() + open_budget;
   const auto server = std::make_shared<TcpConnector>(place->host, place->port);

@@ -118,7 +118,7 @@ private:
   Header header_;
   std::array<std::byte, max_held_bytes> message_{};
   std::bitset<max_numbers> is_tracker_;       ///< the numbers of senders with the tracker's name
-  std::array<Kind, max_numbers> type_kind_{}; ///< by the number of the type
+  std::array<Kind, max_numbers> type_kind_{}; ///< indexed by the type's number
 };
 
 /// Returns the bytes with which a client begins: the cookie.

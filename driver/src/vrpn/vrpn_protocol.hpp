@@ -42,7 +42,7 @@ inline constexpr std::size_t max_message_bytes = 65'536; ///< [?]
 // names of log files.
 inline constexpr std::int32_t describes_sender = -1;
 inline constexpr std::int32_t describes_type = -2;
-inline constexpr std::size_t max_numbers = 2000;   ///< of senders, and of types [C]
+inline constexpr std::size_t max_numbers = 2000;   ///< senders, and also types [C]
 inline constexpr std::size_t max_name_bytes = 100; ///< with the NUL [C]
 
 /// The sender that each server has for itself [C].
