@@ -103,4 +103,20 @@ Result<std::unique_ptr<Tracker>> open_vrpn(const DeviceSpec& spec,
                                            std::span<const std::uint16_t> stations);
 
 } // namespace vrpn
+
+namespace osc {
+
+/// Removes the hand from `osc:[ADDRESS:]PORT/left|right[?listen=ADDRESS]`, and gives the target the
+/// one form ADDRESS:PORT. Returns the station: 1 left, 2 right. Error: usage.
+Result<std::uint16_t> take_osc_side(DeviceSpec& spec);
+
+/// Opens `osc:ADDRESS:PORT[?position=ADDRESS&rotation=ADDRESS]`, a port of UDP at which programs
+/// send poses by OSC, to the addresses of osc_parser.hpp, or, for one hand, to the two addresses
+/// that the options name. Both hands share the port. Opening does not wait for a sender; one that
+/// is missing or silent shows as a silence in the counts, and one line of log. Axes are those of
+/// the stage (y up). Does not block. Errors: usage; those of open_udp().
+Result<std::unique_ptr<Tracker>> open_osc(const DeviceSpec& spec,
+                                          std::span<const std::uint16_t> stations);
+
+} // namespace osc
 } // namespace nendo::driver

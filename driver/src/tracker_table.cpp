@@ -39,6 +39,10 @@ constexpr std::array own_drivers{
 
     TrackerDriver{"vrpn", "vrpn:NAME@HOST[:PORT][?sensor=N&up=y|z]",
                   "a tracker of a VRPN server in the network", take_sensor, vrpn::open_vrpn},
+
+    TrackerDriver{"osc", "osc:[ADDRESS:]PORT/left|right[?position=/ADDR&rotation=/ADDR]",
+                  "a phone or a program that sends poses by OSC over UDP", osc::take_osc_side,
+                  osc::open_osc},
 };
 
 Result<TrackerDriver> find_driver(const DeviceSpec& spec, std::span<const TrackerDriver> more) {

@@ -103,7 +103,7 @@ HostClock::duration DeviceStream::max_silence() const noexcept {
 }
 
 DeviceStream::StreamEnd DeviceStream::stream(const std::stop_token& token) {
-  std::array<std::byte, 1024> buffer{};
+  std::array<std::byte, 2048> buffer{}; // longer than a report or a datagram
   const HostClock::duration silence = max_silence();
   last_record_ = HostClock::now();
   while (!token.stop_requested()) {
