@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -104,7 +105,7 @@ public:
     const std::lock_guard lock(mutex_);
     std::size_t found = 0;
     for (const std::string& line : lines_)
-      found += line.find(words) != std::string::npos ? 1 : 0;
+      if (line.find(words) != std::string::npos) ++found;
     return found;
   }
 
@@ -292,7 +293,7 @@ TEST_SUITE("osc_driver") {
     CHECK(away.error().message.find("ip address") != std::string::npos);
   }
 
-  TEST_CASE("it listens where it is told to, in either spelling") {
+  TEST_CASE("the address to listen at has two spellings") {
     const std::string port = free_port();
     const auto both =
         required(open({"osc:0.0.0.0:" + port + "/left", "osc:" + port + "/right?listen=0.0.0.0"}));

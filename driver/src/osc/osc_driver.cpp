@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
@@ -84,19 +84,38 @@ public:
   const StreamCounters& counters() const noexcept override { return parser_.counters(); }
 
 private:
+  /// The beginning of an address.
+  struct Address {
+    std::array<char, 64> characters{};
+    std::size_t length = 0;
+    std::string_view text() const noexcept { return {characters.data(), length}; }
+  };
+
   void remember(const UnknownAddress& found) noexcept {
-    unknown_bytes_ = std::min(found.address.size(), unknown_.size());
-    std::memcpy(unknown_.data(), found.address.data(), unknown_bytes_);
+    const std::string_view text = found.address.substr(0, Address{}.characters.size());
+    for (Address& address : unknown_) {
+      if (address.text() == text) return;
+      if (address.length > 0) continue;
+      std::copy(text.begin(), text.end(), address.characters.begin());
+      address.length = text.size();
+      return;
+    }
+  }
+
+  std::string unknown_addresses() const {
+    std::string list;
+    for (const Address& address : unknown_)
+      if (address.length > 0) list += (list.empty() ? "" : ", ") + printable(address.text());
+    return list;
   }
 
   /// A sender's own addresses, such as those of a phone, are seen here first. Logs once.
   void explain_silence(const std::string& source) {
     if (parser_.counters().records > 0 || has_explained_) return;
-    if (unknown_bytes_ > 0) {
+    if (const std::string unknown = unknown_addresses(); !unknown.empty()) {
       spdlog::warn("device: {} gets messages to {}, and none that it knows ({}); name a sender's "
                    "own addresses by position= and rotation=",
-                   source, in_quotes({unknown_.data(), unknown_bytes_}),
-                   address_of(options_.stations.front()));
+                   source, unknown, address_of(options_.stations.front()));
     } else if (parser_.counters().bad_records > 0) {
       spdlog::warn("device: {} gets datagrams that are no poses; {} wants seven numbers: x y z in "
                    "metres, a unit quaternion x y z w",
@@ -110,8 +129,7 @@ private:
   const OscOptions options_;
   Parser parser_;
   std::array<DeviceClock, 2> clocks_; ///< the senders of both hands may have different clocks
-  std::array<char, 64> unknown_{};    ///< the beginning of the last unknown address
-  std::size_t unknown_bytes_ = 0;
+  std::array<Address, 4> unknown_;    ///< the first unknown ones
   bool has_explained_ = false;
 };
 
