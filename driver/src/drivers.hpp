@@ -34,6 +34,16 @@ Result<std::unique_ptr<Glove>> open_simulated(const DeviceSpec& spec, std::optio
 Result<std::unique_ptr<Tracker>> open_simulated_tracker(const DeviceSpec& spec,
                                                         std::span<const std::uint16_t> stations);
 
+namespace evdev {
+
+/// Opens `evdev:NAME[?speed=M_PER_S&turn=RAD_PER_S]`, an input device of the kernel as a tracker
+/// with one station, see evdev_motion.hpp. NAME is as for find_input_device(). While it streams,
+/// no other program gets its events.
+Result<std::unique_ptr<Tracker>> open_evdev(const DeviceSpec& spec,
+                                            std::span<const std::uint16_t> stations);
+
+} // namespace evdev
+
 /// Opens `usb:VID:PID[?serial=TEXT&hand=left|right]`, a glove that is a USB device of its own.
 /// `side` is not used: the glove, or the option, determines the hand.
 Result<std::unique_ptr<Glove>> open_usb_glove(const DeviceSpec& spec, std::optional<Side> side);

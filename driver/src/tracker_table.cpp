@@ -28,9 +28,16 @@ Result<std::uint16_t> take_sensor(DeviceSpec& spec) {
   if (option.empty()) return std::uint16_t{0};
   if (const auto sensor = number_in<std::uint16_t>(option.mapped())) return *sensor;
   return Error{Errc::usage, spec.text + ": option sensor must be a whole number from 0 to 65535"};
+
+/// For trackers of one station, whose specifications do not name it.
+Result<std::uint16_t> take_only_station(DeviceSpec& /*spec*/) {
+  return std::uint16_t{1};
 }
 
 constexpr std::array own_drivers{
+    TrackerDriver{"evdev", "evdev:NAME[?speed=M_PER_S&turn=RAD_PER_S]",
+                  "a SpaceMouse, a gamepad or a second mouse", take_only_station,
+                  evdev::open_evdev},
     TrackerDriver{"sim", "sim[:MOTION][?station=N&rate=HZ&seed=N]", "a simulated tracker",
                   take_numbered_station, open_simulated_tracker},
     TrackerDriver{"fastrak", "fastrak:PATH[?station=N&baud=N&hemisphere=X,Y,Z&filter=on|off]",

@@ -15,7 +15,8 @@ using namespace std::chrono_literals;
 
 constexpr auto start_budget = 1'900ms;
 constexpr auto stop_budget = 400ms;
-constexpr auto read_timeout = 100ms; ///< also how soon the reader notices that it is to stop
+constexpr std::chrono::milliseconds read_timeout{
+    100}; ///< also how soon the reader notices that it is to stop
 constexpr auto min_silence = 1500ms;
 constexpr auto retry_interval = 500ms;
 /// Single ones are damage; so many in a row are another device, line rate or form of record.
@@ -109,7 +110,8 @@ DeviceStream::StreamEnd DeviceStream::stream(const std::stop_token& token) {
   while (!token.stop_requested()) {
     if (!transport_) return StreamEnd::gone;
     const HostTime asked = HostClock::now();
-    const auto [status, count] = transport_->read_some(buffer, read_timeout);
+    const auto [status, count] =
+        transport_->read_some(buffer, std::min(read_timeout, protocol_.max_wait()));
     arrival_ = HostClock::now();
     if (status == IoStatus::gone) return StreamEnd::gone;
     push(std::span(buffer).first(count), arrival_);

@@ -2,6 +2,7 @@
 // What differs between devices that send a stream of bytes: how to identify one, and what its bytes
 // mean. Everything else is the same for all of them and is in DeviceStream.
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -76,6 +77,11 @@ public:
   virtual const StreamCounters& counters() const noexcept = 0;
   /// Returns true while StreamCounters::missed is all that was lost of the stream.
   virtual bool counts_missed() const noexcept { return false; }
+  /// Returns how long a read may wait before push() is called without bytes, if that must be soon,
+  /// because the protocol delivers samples that no byte announces.
+  virtual std::chrono::milliseconds max_wait() const noexcept {
+    return std::chrono::milliseconds(100);
+  }
   /// Returns how long a working device may send no record, if it is one that takes its time.
   virtual HostClock::duration max_pause() const noexcept { return {}; }
 };

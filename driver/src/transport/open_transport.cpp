@@ -129,11 +129,15 @@ bool is_serial_port(const std::string& path) {
 }
 
 std::string resolve_port(const std::string& path) {
-  // Not realpath(): it would follow a port's own node too, where that is a link (as in test beds
+  return follow_links(path, is_serial_port);
+}
+
+std::string follow_links(const std::string& path, bool (*is_node)(const std::string&)) {
+  // Not realpath(): it would follow a device's own node too, where that is a link (as in test beds
   // that mock one).
   constexpr int max_links = 16;
   fs::path at = fs::path(path).lexically_normal();
-  for (int links = 0; links < max_links && !is_serial_port(at.string()); ++links) {
+  for (int links = 0; links < max_links && !is_node(at.string()); ++links) {
     std::error_code not_a_link;
     const fs::path target = fs::read_symlink(at, not_a_link);
     if (not_a_link) break;

@@ -24,6 +24,9 @@ Result<std::unique_ptr<Transport>> open_transport(const std::string& path, int b
 /// libserialport can open.
 bool is_serial_port(const std::string& path);
 
+/// Follows symbolic links from `path` until `is_node` is true of a path, and returns the last one.
+std::string follow_links(const std::string& path, bool (*is_node)(const std::string&));
+
 /// Opens a real port by libserialport. `path` must be free of links.
 Result<std::unique_ptr<Transport>> open_serialport(const std::string& path, int baud);
 Result<std::unique_ptr<Transport>> open_termios(const std::string& path);
