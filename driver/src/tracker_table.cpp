@@ -28,6 +28,7 @@ Result<std::uint16_t> take_sensor(DeviceSpec& spec) {
   if (option.empty()) return std::uint16_t{0};
   if (const auto sensor = number_in<std::uint16_t>(option.mapped())) return *sensor;
   return Error{Errc::usage, spec.text + ": option sensor must be a whole number from 0 to 65535"};
+}
 
 /// For trackers of one station, whose specifications do not name it.
 Result<std::uint16_t> take_only_station(DeviceSpec& /*spec*/) {
@@ -43,10 +44,8 @@ constexpr std::array own_drivers{
     TrackerDriver{"fastrak", "fastrak:PATH[?station=N&baud=N&hemisphere=X,Y,Z&filter=on|off]",
                   "Polhemus FASTRAK, InterSense IS-300, IS-600, IS-900", take_numbered_station,
                   fastrak::open_fastrak},
-
     TrackerDriver{"vrpn", "vrpn:NAME@HOST[:PORT][?sensor=N&up=y|z]",
                   "a tracker of a VRPN server in the network", take_sensor, vrpn::open_vrpn},
-
     TrackerDriver{"osc", "osc:[ADDRESS:]PORT/left|right[?position=/ADDR&rotation=/ADDR]",
                   "a phone or a program that sends poses by OSC over UDP", osc::take_osc_side,
                   osc::open_osc},
