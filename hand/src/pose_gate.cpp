@@ -9,12 +9,12 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-/// Nearer to the transmitter, p and -p are too near to each other for a decision by distance.
+/// Nearer to the transmitter, p and -p are so near to each other that only the prediction counts.
 constexpr double min_flip_distance_m = 0.1;
 /// A velocity needs at least this much time: stamps of arrival are inexact, because serial adapters
 /// deliver several records at once, and the noise of two positions counts less.
 constexpr double min_baseline_s = 0.012;
-/// After a longer interval, the velocity from before says nothing about the next pose.
+/// After a longer interval, the previous velocity says nothing about the next pose.
 constexpr double longest_step_s = 0.1;
 /// Intervals that only bound a speed count as at least that long, as for SensorGate.
 constexpr double min_interval_s = 0.016;
@@ -32,20 +32,26 @@ Vector3d PoseGate::predicted_m(double interval_s) const noexcept {
   return last_.position_m + interval_s * velocity_m_s_;
 }
 
-// The last condition is for trackers without hemispheres: a hand that really passes their origin
-// during a short pause is where its velocity has taken it.
 bool PoseGate::is_flip(const Vector3d& position_m, double interval_s) const noexcept {
-  const Vector3d predicted = predicted_m(interval_s);
-  return position_m.norm() > min_flip_distance_m &&
-         (position_m + last_.position_m).norm() < 0.25 * (position_m - last_.position_m).norm() &&
-         (position_m + predicted).norm() < (position_m - predicted).norm();
+  // Whether -p is so many times nearer to a point than p.
+  const auto is_mirrored = [&](double times, const Vector3d& point_m) {
+    return times * (position_m + point_m).norm() < (position_m - point_m).norm();
+  };
+  const double distance_m = position_m.norm();
+  // The prediction has a say for trackers without hemispheres: a hand that really passes their
+  // origin during a short pause is where its velocity has taken it.
+  if (distance_m > min_flip_distance_m)
+    return is_mirrored(4.0, last_.position_m) && is_mirrored(1.0, predicted_m(interval_s));
+  return has_velocity_ && distance_m > noise_m && is_mirrored(4.0, predicted_m(interval_s));
 }
 
 bool PoseGate::is_expected(const Vector3d& position_m, double interval_s) const noexcept {
   if (!has_velocity_)
     return (position_m - last_.position_m).norm() <=
            noise_m + max_speed_m_s * std::max(interval_s, min_interval_s);
-  const double tolerance_m = noise_m + 0.5 * max_acceleration_m_s2 * interval_s * interval_s;
+  // A velocity is no newer than the interval that it is from.
+  const double change_s = std::max(interval_s, last_interval_s_);
+  const double tolerance_m = noise_m + 0.5 * max_acceleration_m_s2 * change_s * change_s;
   // By the time since the last pose; or one more step like the last one, which is right where
   // records arrive several at once, and their stamps say little about the time between them.
   return (position_m - predicted_m(interval_s)).norm() <= tolerance_m ||
@@ -66,6 +72,7 @@ void PoseGate::restart(const Point& point) noexcept {
 void PoseGate::advance(const Point& point, double interval_s) noexcept {
   if (interval_s > longest_step_s) return restart(point);
   step_m_ = point.position_m - last_.position_m;
+  last_interval_s_ = interval_s;
   // A time that went back a little does not count.
   last_ = {point.position_m, std::max(last_.time, point.time)};
   if (seconds_between(newer_.time, last_.time) >= min_baseline_s) {
@@ -94,7 +101,6 @@ std::optional<PoseSample> PoseGate::pass(const PoseSample& sample) noexcept {
   bool restarts = !has_last_ || !(std::abs(since_s) <= longest_pause_s);
   bool is_mirrored = false;
   if (!restarts) {
-    // Near the transmitter, only the prediction can decide between p and -p.
     is_mirrored =
         is_flip(position_m, interval_s) ||
         (!is_expected(position_m, interval_s) && is_expected(Vector3d(-position_m), interval_s));
@@ -108,6 +114,7 @@ std::optional<PoseSample> PoseGate::pass(const PoseSample& sample) noexcept {
   }
   refusals_in_a_row_ = 0;
   if (is_mirrored) ++flips_;
+  has_restarted_ = restarts;
   const Point point{position_m, sample.measured};
   if (restarts)
     restart(point);

@@ -37,7 +37,7 @@ Quaterniond turn_between(const Vector2d& from, const Vector2d& to) noexcept {
   return Quaterniond(half.x(), 0.0, half.y(), 0.0).normalized();
 }
 
-Isometry3d pose_of(const Vector3d& position_m, const Quaterniond& turn) noexcept {
+Isometry3d isometry_of(const Vector3d& position_m, const Quaterniond& turn) noexcept {
   Isometry3d pose = Isometry3d::Identity();
   pose.linear() = turn.toRotationMatrix();
   pose.translation() = position_m;
@@ -45,10 +45,20 @@ Isometry3d pose_of(const Vector3d& position_m, const Quaterniond& turn) noexcept
 }
 
 /// A smooth step from 0 to 1, which is 1.5 times as fast in the middle as on average.
-double smooth_step(double part) noexcept {
+double eased(double part) noexcept {
   return part * part * (3.0 - 2.0 * part);
 }
-constexpr double smooth_step_peak = 1.5;
+constexpr double eased_peak = 1.5;
+
+/// Returns the sample with the wrist's pose in place of the station's.
+PoseSample at_wrist(const PoseSample& sample, const Isometry3d& T_station_wrist) noexcept {
+  const Quaterniond turn(sample.turn_xyzw.data());
+  PoseSample wrist = sample;
+  Vector3d::Map(wrist.position_m.data()) += turn * T_station_wrist.translation();
+  Eigen::Vector4d::Map(wrist.turn_xyzw.data()) =
+      (turn * Quaterniond(T_station_wrist.linear())).normalized().coeffs();
+  return wrist;
+}
 
 } // namespace
 
@@ -66,25 +76,18 @@ WristTracking::WristTracking(const TrackingOptions& options,
       T_stage_wrist_(T_stage_wrist),
       stage_from_tracker_(options.mount.stage_from_tracker.normalized()) {}
 
-WristTracking::WristPose WristTracking::wrist_of(const PoseSample& sample) const noexcept {
-  const Quaterniond turn(sample.turn_xyzw.data());
-  const Isometry3d& T_station_wrist = options_.mount.T_station_wrist;
-  return {Vector3d::Map(sample.position_m.data()) + turn * T_station_wrist.translation(),
-          (turn * Quaterniond(T_station_wrist.linear())).normalized()};
-}
-
 Isometry3d WristTracking::measured() const noexcept {
-  const Vector3d moved_m = stage_from_tracker_ * (wrist_.position_m - centre_tracker_m_);
-  return pose_of(centre_stage_m_ + options_.movement_scale * moved_m,
-                 (stage_from_tracker_ * wrist_.turn).normalized());
+  const Vector3d moved_m = stage_from_tracker_ * (wrist_position_m_ - centre_tracker_m_);
+  return isometry_of(centre_stage_m_ + options_.movement_scale * moved_m,
+                     (stage_from_tracker_ * wrist_turn_).normalized());
 }
 
 void WristTracking::choose_stage(const Isometry3d& T_stage_wrist) noexcept {
   const Quaterniond level = options_.mount.stage_from_tracker.normalized();
-  const Matrix3d turn = (level * wrist_.turn).toRotationMatrix();
+  const Matrix3d turn = (level * wrist_turn_).toRotationMatrix();
   stage_from_tracker_ =
       (turn_between(heading_of(turn), heading_of(T_stage_wrist.linear())) * level).normalized();
-  centre_tracker_m_ = wrist_.position_m;
+  centre_tracker_m_ = wrist_position_m_;
   centre_stage_m_ = T_stage_wrist.translation();
 }
 
@@ -95,7 +98,12 @@ void WristTracking::take(const PoseSample& sample) noexcept {
   counts_.flips = gate_.flips();
   if (!passed) return;
   latest_ = *passed;
-  wrist_ = wrist_of(filter_.pass(*passed));
+  has_jumped_ = has_jumped_ || gate_.has_restarted();
+  // The wrist's pose is filtered and not the station's, which also moves if the forearm only turns
+  // about the wrist: the lags of its position and of its turn would differ.
+  const PoseSample filtered = filter_.pass(at_wrist(*passed, options_.mount.T_station_wrist));
+  wrist_position_m_ = Vector3d::Map(filtered.position_m.data());
+  wrist_turn_ = Quaterniond(filtered.turn_xyzw.data());
   if (!has_pose_) choose_stage(T_stage_wrist_);
   has_pose_ = true;
 }
@@ -108,7 +116,7 @@ void WristTracking::begin_return(const Isometry3d& measured, HostTime now) noexc
   const double farthest_m =
       return_.offset_m.norm() + reach_m * return_.turn.angularDistance(Quaterniond::Identity());
   return_.length_s =
-      std::max(to_seconds(return_time), smooth_step_peak * farthest_m / max_return_speed_m_s);
+      std::max(to_seconds(return_time), eased_peak * farthest_m / max_return_speed_m_s);
 }
 
 Isometry3d WristTracking::returning(const Isometry3d& measured, HostTime now) noexcept {
@@ -117,10 +125,10 @@ Isometry3d WristTracking::returning(const Isometry3d& measured, HostTime now) no
     return_.length_s = 0.0;
     return measured;
   }
-  const double left = 1.0 - smooth_step(since_s / return_.length_s);
+  const double left = 1.0 - eased(since_s / return_.length_s);
   const Quaterniond turn = Quaterniond::Identity().slerp(left, return_.turn);
-  return pose_of(measured.translation() + left * return_.offset_m,
-                 (turn * Quaterniond(measured.linear())).normalized());
+  return isometry_of(measured.translation() + left * return_.offset_m,
+                     (turn * Quaterniond(measured.linear())).normalized());
 }
 
 bool WristTracking::advance(HostTime now) noexcept {
@@ -132,8 +140,8 @@ bool WristTracking::advance(HostTime now) noexcept {
   }
   const Isometry3d T_stage_measured = measured();
   bool must_release = false;
-  if (is_lost_) {
-    is_lost_ = false;
+  if (is_lost_ || has_jumped_) {
+    is_lost_ = has_jumped_ = false;
     begin_return(T_stage_measured, now);
     must_release = return_.offset_m.norm() > max_return_m;
   }
@@ -143,6 +151,7 @@ bool WristTracking::advance(HostTime now) noexcept {
 
 void WristTracking::recentre(const Isometry3d& T_stage_wrist) noexcept {
   return_.length_s = 0.0;
+  has_jumped_ = false;
   if (has_pose_) choose_stage(T_stage_wrist);
   T_stage_wrist_ = has_pose_ ? measured() : T_stage_wrist;
 }

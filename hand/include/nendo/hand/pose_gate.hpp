@@ -25,7 +25,7 @@ public:
   /// A quaternion's length may differ from 1 by this much.
   static constexpr double max_length_error = 0.002;
   /// A position may differ from the prediction by noise_m + max_acceleration_m_s2 / 2 dt^2, where
-  /// dt is the time since the last good pose.
+  /// dt is the time since the last good pose, or between the last two if that was longer.
   static constexpr double noise_m = 0.008;
   static constexpr double max_acceleration_m_s2 = 30.0;
   /// Limits the position instead, while there is no prediction: after the first pose, and after a
@@ -35,7 +35,8 @@ public:
   /// sign in a quaternion keeps its length, but turns the hand. Flicks of a wrist reach 25 rad/s.
   static constexpr double turn_noise_rad = 0.1;
   static constexpr double max_turn_speed_rad_s = 30.0;
-  /// The sample that follows so many unexpected ones passes, and the gate restarts from it.
+  /// The sample that follows so many unexpected ones passes, and the gate restarts from it; but not
+  /// with the letters j and k, by which a FASTRAK says that it cannot measure the field.
   static constexpr int max_refusals_in_a_row = 5;
   /// The gate also restarts after a longer pause, because the hand can then be anywhere: half of
   /// 30 m/s^2 for 0.5 s are farther than a tracker reaches; and if time steps back by more.
@@ -46,9 +47,13 @@ public:
   /// Takes the next sample of one station, in order of time, and returns the sample to use instead
   /// of it: in the hemisphere of the last one, and its quaternion normalised. Returns nothing if it
   /// is refused: numbers that are not finite or out of range always are, and poses that are not as
-  /// expected up to max_refusals_in_a_row. `measured` is the time that counts.
+  /// expected up to max_refusals_in_a_row. `measured` is the time that counts. The hemisphere is
+  /// that of the first sample, and of the first after longest_pause_s.
   std::optional<PoseSample> pass(const PoseSample& sample) noexcept;
 
+  /// Returns whether the gate restarted from the last sample that passed, so that it may be far
+  /// from the one before. The first sample counts.
+  bool has_restarted() const noexcept { return has_restarted_; }
   std::uint64_t refused() const noexcept { return refused_; }
   /// Returns the number of samples that were mirrored back. The receiver crossed the transmitter's
   /// hemisphere if it is not 0.
@@ -72,9 +77,11 @@ private:
   Point older_; ///< which is that from `older_` to `last_`
   Eigen::Quaterniond last_turn_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d step_m_ = Eigen::Vector3d::Zero(); ///< between the last two good poses
+  double last_interval_s_ = 0.0;                     ///< between the last two good poses
   Eigen::Vector3d velocity_m_s_ = Eigen::Vector3d::Zero();
   bool has_last_ = false;
   bool has_velocity_ = false;
+  bool has_restarted_ = false;
   int refusals_in_a_row_ = 0;
   std::uint64_t refused_ = 0;
   std::uint64_t flips_ = 0;

@@ -70,7 +70,7 @@ public:
   /// Takes the station's next sample. The wrist moves at the next advance().
   void take(const PoseSample& sample) noexcept;
   /// Advances to the time of a tick. Returns true if the hand must release the model, because it
-  /// came back farther away than max_return_m.
+  /// came back farther away than max_return_m, or the gate gave in to a pose that far away.
   bool advance(HostTime now) noexcept;
   /// Chooses T_stage_tracker so that the wrist is at this position with this heading, at once. Its
   /// pitch and roll stay as measured, so vertical stays vertical. The heading is the direction of
@@ -86,11 +86,6 @@ public:
   PoseLatency filter_latency() const noexcept { return filter_.latency(); }
 
 private:
-  /// The wrist's filtered pose in the tracker's frame.
-  struct WristPose {
-    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
-    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
-  };
   /// The way from where the wrist froze to the measured pose.
   struct Return {
     Eigen::Vector3d offset_m = Eigen::Vector3d::Zero(); ///< at its begin, from the measured pose
@@ -98,7 +93,6 @@ private:
     HostTime begin{};
     double length_s = 0.0; ///< 0: none
   };
-  WristPose wrist_of(const PoseSample& sample) const noexcept;
   Eigen::Isometry3d measured() const noexcept;
   Eigen::Isometry3d returning(const Eigen::Isometry3d& measured, HostTime now) noexcept;
   void begin_return(const Eigen::Isometry3d& measured, HostTime now) noexcept;
@@ -108,7 +102,9 @@ private:
   PoseGate gate_;
   PoseFilter filter_;
   Eigen::Isometry3d T_stage_wrist_;
-  WristPose wrist_;
+  /// The wrist's filtered pose in the tracker's frame.
+  Eigen::Vector3d wrist_position_m_ = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond wrist_turn_ = Eigen::Quaterniond::Identity();
   /// T_stage_tracker: this turn, and the point of the tracker's frame that is at that of the stage.
   Eigen::Quaterniond stage_from_tracker_;
   Eigen::Vector3d centre_tracker_m_ = Eigen::Vector3d::Zero();
@@ -117,6 +113,7 @@ private:
   PoseSample latest_;
   TrackingCounts counts_;
   bool has_pose_ = false;
+  bool has_jumped_ = false; ///< the gate gave in to a pose elsewhere since the last advance()
   bool is_lost_ = true;
 };
 
