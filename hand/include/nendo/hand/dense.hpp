@@ -20,4 +20,9 @@ NENDO_API Eigen::MatrixXd inverse_of_positive_definite(const Eigen::MatrixXd& ma
 /// Returns the eigenvalues of a symmetric matrix, which is not empty, in ascending order.
 NENDO_API Eigen::VectorXd eigenvalues_of_symmetric(const Eigen::MatrixXd& matrix);
 
+/// Returns the rotation R with the greatest trace(R^T matrix): the nearest one to a sum of
+/// rotations and, for a sum of products a b^T, the one that brings the vectors b closest to a
+/// (Wahba's problem). No allocation.
+NENDO_API Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix);
+
 } // namespace nendo::hand
