@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -101,6 +102,24 @@ public:
     complain(*node, std::string(key) + " must be a whole number within " + std::to_string(min) +
                         " and " + std::to_string(max));
     return 0;
+  }
+  /// Reads a date and time with zone, of the years 1970 to 9999.
+  std::chrono::sys_seconds time(const toml::table& table, std::string_view key) {
+    using namespace std::chrono;
+    const toml::node* node = find(table, key);
+    if (node == nullptr) return {};
+    const auto value = node->value_exact<toml::date_time>();
+    if (!value || !value->offset) {
+      complain(*node, std::string(key) + " must be a date and time with zone, "
+                                         "as 2026-11-21T19:27:05Z, without quotes");
+      return {};
+    }
+    const sys_days day = year{value->date.year} / int{value->date.month} / int{value->date.day};
+    const sys_seconds moment = day + hours{value->time.hour} + minutes{value->time.minute} +
+                               seconds{value->time.second} - minutes{value->offset->minutes};
+    if (moment < sys_seconds{} || moment >= sys_days{year{10000} / 1 / 1})
+      complain(*node, std::string(key) + " must lie within the years 1970 and 9999");
+    return moment;
   }
   /// Reads a list of exactly `Size` numbers.
   template <std::size_t Size>

@@ -16,6 +16,7 @@
 #include <nendo/base/text.hpp>
 
 #include "calibration_check.hpp"
+#include "toml_text.hpp"
 
 namespace nendo::hand {
 namespace {
@@ -31,7 +32,8 @@ bool is_plain_zero(double value) noexcept {
   return std::bit_cast<std::uint64_t>(value) == 0;
 }
 
-/// A TOML string of text that complaint_about_text() accepts.
+} // namespace
+
 std::string toml_string(std::string_view text) {
   std::string written = "\"";
   for (const char c : text) {
@@ -40,6 +42,8 @@ std::string toml_string(std::string_view text) {
   }
   return written + "\"";
 }
+
+namespace {
 
 std::string sensor_line(Sensor sensor, const SensorCalibration& line,
                         const std::optional<SensorQuality>& quality) {

@@ -9,6 +9,8 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include "file_name_part.hpp"
+
 namespace nendo::hand {
 namespace {
 
@@ -37,8 +39,9 @@ std::uint64_t hash_of(const std::string& text) noexcept {
   return hash;
 }
 
-/// One part of a file name, no two strings the same.
-std::string part_of(const std::string& text) {
+} // namespace
+
+std::string file_name_part(const std::string& text) {
   constexpr std::size_t most = 80;
   constexpr std::string_view hex = "0123456789ABCDEF";
   std::string part;
@@ -55,6 +58,8 @@ std::string part_of(const std::string& text) {
     part += hex[(hash_of(text) >> (shift - 4)) & 0xFU];
   return part;
 }
+
+namespace {
 
 void list_folder(const fs::path& folder, bool shared, CalibrationList& list) {
   if (folder.empty()) return;
@@ -108,8 +113,8 @@ std::string calibration_file_name(const std::string& user, const std::string& gl
   // A glove whose number is "any" is not any glove.
   const std::string glove = glove_serial.empty()    ? "any"
                             : glove_serial == "any" ? "%61ny"
-                                                    : part_of(glove_serial);
-  return part_of(user) + "+" + glove + "+" + std::string(name_of(side)) + ".toml";
+                                                    : file_name_part(glove_serial);
+  return file_name_part(user) + "+" + glove + "+" + std::string(name_of(side)) + ".toml";
 }
 
 Result<fs::path> own_calibration_path(const std::string& user, const std::string& glove_serial,

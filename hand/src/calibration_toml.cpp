@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -21,25 +20,6 @@ namespace {
 void complain_if(TomlReader& reader, const toml::node& where, const std::string& subject,
                  const std::string& complaint) {
   if (!complaint.empty()) reader.complain(where, subject + ": " + complaint);
-}
-
-std::chrono::sys_seconds read_time(TomlReader& reader, const toml::table& table,
-                                   std::string_view key) {
-  using namespace std::chrono;
-  const toml::node* node = reader.find(table, key);
-  if (node == nullptr) return {};
-  const auto value = node->value_exact<toml::date_time>();
-  if (!value || !value->offset) {
-    reader.complain(*node, std::string(key) + " must be a date and time with zone, "
-                                              "as 2026-11-21T19:27:05Z, without quotes");
-    return {};
-  }
-  const sys_days day = year{value->date.year} / int{value->date.month} / int{value->date.day};
-  const sys_seconds moment = day + hours{value->time.hour} + minutes{value->time.minute} +
-                             seconds{value->time.second} - minutes{value->offset->minutes};
-  if (moment < sys_seconds{} || moment >= sys_days{year{10000} / 1 / 1})
-    reader.complain(*node, std::string(key) + " must lie within the years 1970 and 9999");
-  return moment;
 }
 
 /// nullopt, with a complaint, if no sensor has that name.
@@ -187,7 +167,7 @@ void read_wearer(TomlReader& reader, const toml::table& root, WearerCalibration&
   complain_if(reader, root, "user", complaint_about_text(wearer.user, false));
   wearer.method = reader.text(root, "method");
   complain_if(reader, root, "method", complaint_about_text(wearer.method, false));
-  wearer.made = read_time(reader, root, "made");
+  wearer.made = reader.time(root, "made");
   wearer.calibration.middle_bias = reader.number(root, "middle_bias");
   complain_if(reader, root, "middle_bias", complaint_about_bias(wearer.calibration.middle_bias));
   read_mixed_in(reader, root, wearer);

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace nendo::hand {
+
+/// Returns the text as one part of a file name: at most 80 characters of [A-Za-z0-9_%.-], and no
+/// two texts alike. calibration_store.cpp defines it.
+std::string file_name_part(const std::string& text);
+
+} // namespace nendo::hand

@@ -1,0 +1,34 @@
+// Whatever the text is, parse_mount gives an error or a mount that can be written, and reads back
+// to the same bits.
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include <nendo/hand/tracker_mount.hpp>
+
+namespace {
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+} // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const auto mount = nendo::hand::parse_mount(text, "fuzz");
+  if (!mount) {
+    const auto& message = mount.error().message;
+    require(message.starts_with("fuzz:") && message.find('\n') == std::string::npos);
+    return 0;
+  }
+  require(nendo::hand::wrist_mount(*mount).T_station_wrist.matrix().allFinite());
+  const auto written = nendo::hand::mount_text(*mount);
+  require(static_cast<bool>(written));
+  const auto back = nendo::hand::parse_mount(*written, "back");
+  require(back && *back == *mount && nendo::hand::mount_text(*back).operator*() == *written);
+  return 0;
+}
