@@ -23,11 +23,11 @@ struct TrackerMount {
   std::uint16_t station = 0;
   Side side = Side::right;
   bool on_hand = false;                        ///< `mounted`: "forearm" or "hand"
-  std::array<double, 3> position_mm{};         ///< the wrist's, in the station's frame
+  std::array<double, 3> position_mm{};         ///< position of the wrist in the station frame
   std::array<double, 4> turn_xyzw{0, 0, 0, 1}; ///< wrist to station
   std::array<double, 4> stage_from_tracker_xyzw{0, 0, 0, 1};
   double late_ms = 0.0;
-  double residual_mm = 0.0;         ///< of the exercise
+  double residual_mm = 0.0;         ///< the residual of the exercise
   std::chrono::sys_seconds taken{}; ///< UTC, 1970 to 9999
   friend bool operator==(const TrackerMount&, const TrackerMount&) = default;
 };
