@@ -41,10 +41,11 @@ Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side,
   return sculpting::hand_of(*std::move(glove), side, event_count, cli::note);
 }
 
-Result<void> open_wrists(std::span<OpenHand> hands, const std::array<std::string, 2>& specs) {
+Result<void> open_wrists(std::span<OpenHand> hands, const WristOptions& options) {
+  if (const auto fine = check(options); !fine) return fine;
   cli::install_stop_signals();
   const std::array more{recording::replay_tracker_driver()};
-  auto opened = sculpting::open_wrists(hands, specs, more);
+  auto opened = sculpting::open_wrists(hands, options, cli::note, more);
   if (cli::stop_requested())
     return Error{Errc::failed, "interrupted while a tracker was being identified"};
   return opened;
@@ -113,9 +114,17 @@ void add_calibration_options(cli::Command& command, CalibrationOptions& options,
                    "with --user, nendo run keeps what was learned, and continues from it");
 }
 
-void add_wrist_options(cli::Command& command, std::array<std::string, 2>& wrists) {
-  command.add_option("--left-wrist", wrists[0], "TRACKER that moves the left hand");
-  command.add_option("--right-wrist", wrists[1], "TRACKER that moves the right hand");
+void add_wrist_options(cli::Command& command, WristOptions& options) {
+  command.add_option("--left-wrist", options.trackers[0], "TRACKER that moves the left hand");
+  command.add_option("--right-wrist", options.trackers[1], "TRACKER that moves the right hand");
+  command.add_option("--wrist-scale", options.movement_scale,
+                     "Multiplies the movements of trackers on the stage, 0.05 to 20");
+}
+
+Result<void> check(const WristOptions& options) {
+  constexpr double min_scale = 0.05, max_scale = 20.0;
+  if (options.movement_scale >= min_scale && options.movement_scale <= max_scale) return {};
+  return Error{Errc::usage, "--wrist-scale: use a number from 0.05 to 20"};
 }
 
 std::vector<driver::TrackerDriver> tracker_drivers() {

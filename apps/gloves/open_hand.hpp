@@ -2,7 +2,6 @@
 // Opens gloves for the commands that use hands: a stop signal ends the opening, and notes go to
 // standard error.
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,6 +21,7 @@
 namespace nendo::gloves {
 
 using sculpting::CalibrationOptions;
+using sculpting::WristOptions;
 
 /// Adds the options --user, --calibration and --adapt; for commands that take two gloves also
 /// --left-user and --right-user.
@@ -30,8 +30,10 @@ void add_calibration_options(cli::Command& command, CalibrationOptions& options,
 /// Fails with usage if the options contradict each other. Call it before a glove is opened.
 Result<void> check(const CalibrationOptions& options);
 
-/// Adds the options --left-wrist and --right-wrist.
-void add_wrist_options(cli::Command& command, std::array<std::string, 2>& wrists);
+/// Adds the options --left-wrist, --right-wrist and --wrist-scale.
+void add_wrist_options(cli::Command& command, WristOptions& options);
+/// Checks the scale. Error: usage.
+Result<void> check(const WristOptions& options);
 /// Returns the drivers of trackers: the library's, and recordings.
 std::vector<driver::TrackerDriver> tracker_drivers();
 
@@ -71,7 +73,7 @@ Result<OpenHand> open_hand(const std::string& spec, std::optional<Side> side = s
 
 /// Opens the trackers that move these hands' wrists, as sculpting::open_wrists() does, also from
 /// recordings. If a stop signal comes meanwhile, that is the error: failed, "interrupted".
-Result<void> open_wrists(std::span<OpenHand> hands, const std::array<std::string, 2>& specs);
+Result<void> open_wrists(std::span<OpenHand> hands, const WristOptions& options);
 
 /// Returns the error that two gloves are of the same hand, with the name by which one of them would
 /// be the other hand's.

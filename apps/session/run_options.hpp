@@ -1,7 +1,6 @@
 #pragma once
 // The options of a run on the command line.
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,7 +24,7 @@ struct PuppetPlace {
 struct RunOptions {
   std::string left;                       ///< GLOVE; empty: not requested
   std::string right;                      ///< GLOVE; empty: not requested
-  std::array<std::string, 2> wrists;      ///< TRACKER by side; empty: none moves that wrist
+  sculpting::WristOptions wrists;         ///< the trackers of the wrists
   std::string mesh;                       ///< empty: the shipped model, or a puppet's
   deform::ReadOptions reading{};          ///< the file's axes, also for written files
   std::string puppet_file;                ///< empty: none

@@ -72,7 +72,8 @@ void TrackedWrists::record_latencies(HostTime done, LoopStats& stats) const noex
     if (!wrist || !wrist->fresh) continue;
     const PoseSample& latest = wrist->tracking.latest();
     stats.pose_to_frame.record(done - latest.arrival);
-    stats.pose_age.record(done - latest.measured);
+    stats.pose_age.record(done - latest.measured +
+                          from_seconds(wrist->options.mount.late_s)); // by which it lies behind
   }
 }
 

@@ -5,7 +5,9 @@
 #include <thread>
 #include <utility>
 
+#include <nendo/base/text.hpp>
 #include <nendo/driver/devices.hpp>
+#include <nendo/hand/tracker_mount.hpp>
 
 namespace nendo::sculpting {
 namespace {
@@ -91,19 +93,45 @@ hand::TrackingOptions usual_tracking(const driver::TrackerInfo& info) noexcept {
   return tracking;
 }
 
-Result<void> open_wrists(std::span<OpenHand> hands, const std::array<std::string, 2>& specs,
+namespace {
+
+Error without_hand(Side side, const std::string& spec) {
+  const std::string name(name_of(side));
+  return {Errc::usage, "--" + name + "-wrist " + spec + ": there is no " + name +
+                           " hand; name its glove with --" + name};
+}
+
+/// Returns the tracking by the stored mount, or else the usual one.
+Result<hand::TrackingOptions> find_tracking(const driver::TrackerStation& station, Side side,
+                                            const Note& note) {
+  const driver::TrackerInfo& info = station.tracker->info();
+  hand::TrackingOptions tracking = usual_tracking(info);
+  if (info.kind != driver::SourceKind::device) return tracking;
+  const auto mount = hand::find_mount(info.source, station.station, side);
+  if (!mount) return mount.error();
+  const std::string name = printable(info.source) + ", " + std::string(name_of(side)) + " hand: ";
+  if (*mount) {
+    tracking.mount = hand::wrist_mount(**mount);
+    note(name + "mount as calibrated");
+  } else {
+    note(name + "the mount is not calibrated, so the wrist counts as being at the receiver; `nendo "
+                "calibrate tracker` finds where it is");
+  }
+  return tracking;
+}
+
+} // namespace
+
+Result<void> open_wrists(std::span<OpenHand> hands, const WristOptions& options, const Note& note,
                          std::span<const driver::TrackerDriver> more) {
   std::vector<std::string> wanted;
   std::vector<OpenHand*> moved;
   for (const Side side : {Side::left, Side::right}) {
-    const std::string& spec = specs[flow::Placement::index_of(side)];
+    const std::string& spec = options.trackers[flow::Placement::index_of(side)];
     if (spec.empty()) continue;
     const auto hand =
         std::ranges::find_if(hands, [side](const OpenHand& one) { return one.side == side; });
-    if (hand == hands.end())
-      return Error{Errc::usage, "--" + std::string(name_of(side)) + "-wrist " + spec +
-                                    ": there is no " + std::string(name_of(side)) +
-                                    " hand; name its glove with --" + std::string(name_of(side))};
+    if (hand == hands.end()) return without_hand(side, spec);
     wanted.push_back(spec);
     moved.push_back(&*hand);
   }
@@ -114,9 +142,11 @@ Result<void> open_wrists(std::span<OpenHand> hands, const std::array<std::string
     return Error{Errc::usage, "--left-wrist and --right-wrist: both are " + wanted[0] +
                                   "; give each hand a station of its own, e.g. with station="};
   for (std::size_t at = 0; at < moved.size(); ++at) {
-    const driver::TrackerInfo& info = (*stations)[at].tracker->info();
+    auto tracking = find_tracking((*stations)[at], moved[at]->side, note);
+    if (!tracking) return tracking.error();
+    tracking->movement_scale = options.movement_scale;
     moved[at]->wrist =
-        OpenWrist{std::make_unique<PoseRing>(1024), (*stations)[at], usual_tracking(info)};
+        OpenWrist{std::make_unique<PoseRing>(1024), (*stations)[at], *std::move(tracking)};
   }
   return {};
 }

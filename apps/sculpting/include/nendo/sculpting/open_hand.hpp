@@ -52,12 +52,18 @@ NENDO_API Result<std::vector<OpenHand>> open_found(std::span<const Side> sides,
                                                    const std::string& simulated,
                                                    const OpenNamed& open, const Note& note);
 
-/// Opens the trackers that `specs` names, by the side of the hand (empty: none), with the drivers
-/// of the library and `more`, for those of `hands` that they move. The tracking is the usual one of
-/// the tracker. Blocks. Errors: those of driver::open_trackers(); usage (no such hand, or both
-/// hands at one station).
-NENDO_API Result<void> open_wrists(std::span<OpenHand> hands,
-                                   const std::array<std::string, 2>& specs,
+/// The trackers of a run's wrists.
+struct WristOptions {
+  std::array<std::string, 2> trackers; ///< TRACKER by the side of the hand; empty: none
+  double movement_scale = 1.0;         ///< hand::TrackingOptions::movement_scale
+};
+
+/// Opens the trackers of `options`, with the drivers of the library and `more`, for those of
+/// `hands` that they move. A device gets its stored mount (hand::find_mount()), and a note says
+/// which, or that there is none. Blocks. Errors: those of driver::open_trackers() and find_mount();
+/// usage (no such hand, or both hands at one station).
+NENDO_API Result<void> open_wrists(std::span<OpenHand> hands, const WristOptions& options,
+                                   const Note& note,
                                    std::span<const driver::TrackerDriver> more = {});
 
 /// Returns the tracking that suits the tracker, without a calibration of its mount.
