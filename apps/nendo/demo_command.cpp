@@ -1,11 +1,14 @@
-// nendo demo: two emulated CyberGloves and the real serial driver play a face, or shape a Moai; or
-// simulated hands make a flat cake, a bowl and ears of clay.
+// nendo demo: two emulated CyberGloves and the real serial driver play a face, or shape a Moai;
+// with an emulated FASTRAK the hands walk round it; or simulated hands make a flat cake, a bowl and
+// ears of clay.
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -41,26 +44,42 @@ struct Options {
   std::string record; ///< empty: beside `out`; an earlier demo's recording is replaced
 
   bool is_face() const noexcept { return what == "face"; }
+  bool is_space() const noexcept { return what == "space"; }
 };
 
-/// A glove on a pseudo-terminal, which answers the driver as the real one's electronics would.
-struct DemoGlove {
+/// A device on a pseudo-terminal, which answers the driver as the real one's electronics would.
+struct DemoDevice {
   std::unique_ptr<emulator::DeviceEmulator> unit;
   std::unique_ptr<emulator::ServedEmulator> server;
 };
 
-Result<DemoGlove> emulate(Side side, const Options& demo) {
+Result<DemoDevice> serve(const emulator::EmulatorOptions& options) {
+  auto unit = emulator::DeviceEmulator::open(options);
+  if (!unit) return unit.error();
+  DemoDevice device{*std::move(unit), nullptr};
+  device.server = std::make_unique<emulator::ServedEmulator>(*device.unit);
+  return device;
+}
+
+Result<DemoDevice> emulate_glove(Side side, const Options& demo) {
   emulator::EmulatorOptions options;
   options.side = side;
   options.sensors = 22;
   options.rate_hz = rate_hz;
   options.seed = 7;
   if (demo.is_face()) options.motion = "faces";
-  auto unit = emulator::DeviceEmulator::open(options);
-  if (!unit) return unit.error();
-  DemoGlove glove{*std::move(unit), nullptr};
-  glove.server = std::make_unique<emulator::ServedEmulator>(*glove.unit);
-  return glove;
+  if (demo.is_space()) options.motion = "pinch";
+  return serve(options);
+}
+
+/// A FASTRAK with a receiver on each wrist, whose wearer walks round the model.
+Result<DemoDevice> emulate_tracker() {
+  emulator::EmulatorOptions options;
+  options.device = "fastrak";
+  options.motion = "orbit";
+  options.tracker.stations = {1, 2};
+  options.tracker.noise = true;
+  return serve(options);
 }
 
 /// An expression of the motion "faces", and a moment at which both hands hold it.
@@ -84,21 +103,28 @@ std::string beside(const std::string& out, const char* ending) {
 
 Result<session::RunOptions> run_options(const Options& options) {
   const auto mode = flow::mode_named(options.mode);
-  if (!mode || flow::is_by_hands(*mode))
+  const bool is_clay_in_space = options.is_space() && mode == flow::Mode::clay;
+  if (!mode || (flow::is_by_hands(*mode) && !is_clay_in_space))
     return Error{Errc::usage, "--mode " + options.mode +
-                                  ": use type1 or type2; `nendo demo clay` has its own mode"};
+                                  ": use type1 or type2, or with the demo space also clay; `nendo "
+                                  "demo clay` has its own mode"};
   if (auto fine = cli::check_duration(options.duration_s, cli::End::needed); !fine)
     return fine.error();
   if (options.duration_s > max_s) return Error{Errc::usage, "--duration: use at most 1h"};
-  if (options.what != "face" && options.what != "moai" && options.what != "clay")
-    return Error{Errc::usage, options.what + ": no such demo; use face, moai or clay"};
+  constexpr std::array<std::string_view, 4> demos{"face", "moai", "space", "clay"};
+  if (std::find(demos.begin(), demos.end(), options.what) == demos.end())
+    return Error{Errc::usage, options.what + ": no such demo; use face, moai, space or clay"};
   if (auto fine = cli::check_place("--record", options.record); !fine) return fine.error();
   if (auto fine = cli::check_place("--out", options.out, deform::mesh_endings); !fine)
     return fine.error();
   if (auto fine = cli::check_place("--picture", options.picture, {".png"}); !fine)
     return fine.error();
   session::RunOptions run;
-  run.mesh = cli::shipped_model(options.what + ".obj").string();
+  run.mesh = cli::shipped_model(is_clay_in_space     ? "clay.ply"
+                                : options.is_space() ? "moai.obj"
+                                                     : options.what + ".obj")
+                 .string();
+  if (is_clay_in_space) run.model_size_m = sculpting::usual_size_m(*mode);
   run.out = options.out;
   if (!makes_strip(options)) run.picture = options.picture;
   run.duration_s = options.duration_s;
@@ -113,7 +139,7 @@ Result<session::RunOptions> run_options(const Options& options) {
   }
   if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine.error();
   if (!options.is_face()) {
-    run.loop.sculptor.deformer.injective.emplace();
+    if (!is_clay_in_space) run.loop.sculptor.deformer.injective.emplace();
     return run;
   }
   run.puppet_file = cli::shipped_model("face.puppet.toml").string();
@@ -254,6 +280,20 @@ Result<void> demonstrate_clay(const std::string& out, const std::string& picture
   return {};
 }
 
+void set_wrists(const std::string& tty, session::RunOptions& run) {
+  for (const Side side : {Side::left, Side::right})
+    run.wrists.trackers[flow::Placement::index_of(side)] =
+        "fastrak:" + tty + "?station=" + (side == Side::left ? "1" : "2");
+  // The emulated wearer walks on a circle of 0.3 m; the hands begin nearer to the model's middle.
+  run.wrists.movement_scale = run.loop.sculptor.mode == flow::Mode::clay ? 0.4 : 1.0;
+}
+
+const char* in_words(const Options& options) {
+  if (options.is_face()) return "Ten fingers play a face";
+  return options.is_space() ? "Both hands walk round the model and shape it"
+                            : "Both hands shape the Moai";
+}
+
 Result<void> demonstrate(const Options& options) {
   auto run = run_options(options);
   if (!run) return run.error();
@@ -261,18 +301,24 @@ Result<void> demonstrate(const Options& options) {
   auto model = takes::read_model(run->mesh);
   if (!model) return model.error();
   cli::install_stop_signals();
-  const auto left = emulate(Side::left, options);
+  const auto left = emulate_glove(Side::left, options);
   if (!left) return left.error();
-  const auto right = emulate(Side::right, options);
+  const auto right = emulate_glove(Side::right, options);
   if (!right) return right.error();
   run->left = "serial:" + left->unit->tty_path();
   run->right = "serial:" + right->unit->tty_path();
   std::cout << "Two emulated CyberGloves stream at " << left->unit->tty_path() << " and "
-            << right->unit->tty_path() << ". "
-            << (options.is_face() ? "Ten fingers play a face for "
-                                  : "Both hands shape the Moai for ")
-            << run->duration_s << " s.\n"
-            << std::flush;
+            << right->unit->tty_path() << ". ";
+  DemoDevice tracker;
+  if (options.is_space()) {
+    auto emulated = emulate_tracker();
+    if (!emulated) return emulated.error();
+    tracker = *std::move(emulated);
+    set_wrists(tracker.unit->tty_path(), *run);
+    std::cout << "An emulated FASTRAK has a station for each wrist at " << tracker.unit->tty_path()
+              << ". ";
+  }
+  std::cout << in_words(options) << " for " << run->duration_s << " s.\n" << std::flush;
   if (auto done = run_hands(*run, std::move(model->mesh)); !done) return done;
   return show(options, *run);
 }
@@ -283,16 +329,21 @@ Result<void> demonstrate(const Options& options) {
 void nendo::app::add_demo(cli::Command& program) {
   using namespace demo_command;
   cli::Command command = program.add_command(
-      "demo", "Two emulated CyberGloves play a face, or shape a Moai, through the real driver, or "
-              "simulated hands knead clay; writes a picture, a recording and an animation");
+      "demo",
+      "Two emulated CyberGloves play a face, or shape a Moai, through the real driver, also "
+      "with a tracker on each wrist, or simulated hands knead clay; writes a picture, a "
+      "recording and an animation");
   Options& options = command.on_chosen<Options>(demonstrate);
   command.add_option(
       "DEMO", options.what,
-      "face: ten fingers animate it; moai: hands shape it; clay: whole hands make a "
-      "cake, a bowl and ears, in about 30 s, for which only --out and --picture apply");
-  command.add_option(
-      "--mode", options.mode,
-      "type1 (from rest): the rest shape follows the fingertips; type2 (accumulating): strokes");
+      "face: ten fingers animate it; moai: hands shape it; space: hands with an emulated FASTRAK "
+      "walk round it; clay: whole hands make a cake, a bowl and ears, in about 30 s, for which "
+      "only "
+      "--out and --picture apply");
+  command.add_option("--mode", options.mode,
+                     "type1 (from rest): the rest shape follows the fingertips; type2 "
+                     "(accumulating): strokes; clay, "
+                     "with the demo space: whole hands press");
   command.add_duration("--duration", options.duration_s, "How long, e.g. 30s or 2m, up to 1h");
   command.add_option("--out", options.out, "Where the shape goes, .obj, .ply or .stl");
   command.add_option("--picture", options.picture, "Where the picture goes, .png");
