@@ -121,6 +121,7 @@ TEST_SUITE("fault") {
       if (by_chance) example = std::string(name) + "=1%";
       if (name == "swap") example = "swap@5s=18";
       if (name == "stick") example = "stick@5s=index_pip:255";
+      if (name == "error") example = "error@5s=2:k";
       const auto fault = parse_fault(example);
       REQUIRE(fault);
       CHECK(fault->kind == static_cast<FaultKind>(k));

@@ -29,6 +29,7 @@
 #include "line/fault.hpp"
 #include "line/fault_injector.hpp"
 #include "line/traffic_log.hpp"
+#include "units/emulated_kinds.hpp"
 #include "units/emulated_unit.hpp"
 
 namespace nendo::emulator {

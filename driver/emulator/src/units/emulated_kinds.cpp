@@ -1,5 +1,7 @@
 // The table of the devices that can be emulated, and of the gloves' variants.
 
+#include "units/emulated_kinds.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>

@@ -8,16 +8,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <initializer_list>
-#include <memory>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
-#include <nendo/base/result.hpp>
 #include <nendo/driver/sample.hpp>
-#include <nendo/emulator/emulator.hpp>
 
 namespace nendo::emulator {
 
@@ -136,31 +131,5 @@ private:
   std::size_t output_size_ = 0;
   std::vector<UnitMessage> messages_;
 };
-
-/// A set of kinds of incidents.
-class IncidentSet {
-public:
-  constexpr IncidentSet(std::initializer_list<Incident::Kind> kinds) noexcept {
-    for (const Incident::Kind kind : kinds)
-      bits_ |= 1U << static_cast<unsigned>(kind);
-  }
-  constexpr bool has(Incident::Kind kind) const noexcept {
-    return ((bits_ >> static_cast<unsigned>(kind)) & 1U) != 0;
-  }
-
-private:
-  unsigned bits_ = 0;
-};
-
-/// A kind of device that can be emulated: a line in the table of emulated_kinds.cpp.
-struct EmulatedKind {
-  std::string_view name;
-  DeviceType type;
-  Result<std::unique_ptr<EmulatedUnit>> (*make)(const EmulatorOptions& options);
-  IncidentSet incidents; ///< that can happen to it
-};
-
-/// Returns the kind of that name. Error: usage, naming those there are.
-Result<EmulatedKind> find_emulated_kind(std::string_view name);
 
 } // namespace nendo::emulator
