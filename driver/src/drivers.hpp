@@ -129,4 +129,14 @@ Result<std::unique_ptr<Tracker>> open_osc(const DeviceSpec& spec,
                                           std::span<const std::uint16_t> stations);
 
 } // namespace osc
+
+namespace liberty {
+
+/// Opens `liberty:PATH[?station=N&baud=N&hemisphere=x,y,z&filter=on|off]`, a Polhemus LIBERTY,
+/// PATRIOT or Latus at a serial port. Each of its stations sends, also those that are not wanted.
+/// Otherwise as open_fastrak().
+Result<std::unique_ptr<Tracker>> open_liberty(const DeviceSpec& spec,
+                                              std::span<const std::uint16_t> stations);
+
+} // namespace liberty
 } // namespace nendo::driver

@@ -2,25 +2,18 @@
 """A Polhemus FASTRAK on a pseudo-terminal, for the tests of its driver. Written from the manual's facts alone.
 usage: fastrak_device.py [--plugged 12] [--baud 115200] [--status 55] [--error k] [--burst N] [--odd WHAT]
 
-It prints its terminal's path, then answers each line of its standard input with one line. `mute` and `unmute` stop and
-start all output, `counts` and `heard` report. It ends with its input. It hears and says noise at any other rate of the line.
+It answers `counts` and `heard`, and what device_terminal.py does.
 
 Each record of a station has a number n: x is 20 + n % 1000 / 100 cm, y ten times the station, z is -30, and the quaternion
-is a turn about z by n % 1000 milliradians. --odd: `silent`, `babble`, `inches` (refuses u), `deaf` (no answer to l),
+is a turn about z by n % 1000 milliradians. --odd: `inches` (refuses u), `deaf` (no answer to l),
 `waiting` (for the rest of a command, at the beginning), `streaming` (already, at the beginning), `refuse` (x and v)."""
 import argparse
 import math
-import os
-import pty
-import select
 import struct
-import sys
-import termios
 import time
-import tty
 
-SPEEDS = {9600: termios.B9600, 19200: termios.B19200, 38400: termios.B38400, 57600: termios.B57600,
-          115200: termios.B115200}
+import device_terminal
+
 CYCLE_S = 1.0 / 120.0
 AT_ONCE = b"PCcFfUuST\x0b\x11\x13\x19W"  # commands that act without a CR
 FORBIDDEN = b"\x0bW\x19"
@@ -141,14 +134,7 @@ class Unit:
                 self.record(stations[self.turn])
 
 
-def line_speed(fd):
-    return termios.tcgetattr(fd)[5]
-
-
-def answer(unit, line, state):
-    if line in ("mute", "unmute"):
-        state["mute"] = line == "mute"
-        return line
+def answer(unit, line):
     if line == "counts":
         return f"sent {unit.sent} forbidden {unit.forbidden} on {''.join(sorted(unit.on))}"
     return " ".join(unit.heard).replace("\n", "?")
@@ -163,37 +149,7 @@ def main():
     parser.add_argument("--burst", type=int, default=1)
     parser.add_argument("--odd", default="")
     options = parser.parse_args()
-    unit = Unit(options)
-    master, slave = pty.openpty()
-    tty.setraw(slave)
-    os.set_blocking(master, False)
-    print(os.ttyname(slave), flush=True)
-    state = {"mute": False}
-    while True:
-        ready, _, _ = select.select([master, sys.stdin], [], [], 0.001)
-        if sys.stdin in ready:
-            line = sys.stdin.readline()
-            if not line:
-                return
-            print(answer(unit, line.strip(), state), flush=True)
-        data = b""
-        if master in ready:
-            try:
-                data = os.read(master, 4096)
-            except (BlockingIOError, OSError):
-                data = b""
-        is_tuned = line_speed(slave) == SPEEDS[options.baud]
-        if options.odd == "babble":
-            unit.out += b"x7 noise 0\r\n"
-        elif options.odd != "silent" and is_tuned:
-            unit.receive(data)
-        unit.advance(time.monotonic())
-        if unit.out and not state["mute"]:
-            try:
-                os.write(master, bytes(unit.out) if is_tuned else bytes(b ^ 0x9A for b in unit.out[::2]))
-            except BlockingIOError:
-                pass
-        unit.out.clear()
+    device_terminal.serve(Unit(options), options.baud, options.odd, answer)
 
 
 if __name__ == "__main__":

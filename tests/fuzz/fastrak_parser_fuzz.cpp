@@ -6,8 +6,11 @@
 #include <array>
 #include <cmath>
 
+#include "polhemus/pose_floats.hpp"
+
 #include "parser_fuzz.hpp"
 
+using namespace nendo::driver;
 using namespace nendo::driver::fastrak;
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
@@ -25,9 +28,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     double squares = 0.0;
     for (const double component : record.turn_xyzw)
       squares += component * component;
-    require(std::abs(std::sqrt(squares) - 1.0) <= max_norm_error);
+    require(std::abs(std::sqrt(squares) - 1.0) <= polhemus::max_norm_error);
     for (const double coordinate_m : record.position_m)
-      require(std::abs(coordinate_m) <= max_coordinate_cm / 100.0);
+      require(std::abs(coordinate_m) <= polhemus::max_coordinate_cm / 100.0);
   };
   push_stream(parser, {stream, 1 + *data % 7U, record_bytes}, [&](auto chunk) {
     parser.push(chunk, sink);

@@ -6,8 +6,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <nendo/base/text.hpp>
-
 #include "drivers.hpp"
 #include "fastrak/fastrak_identity.hpp"
 #include "fastrak/fastrak_parser.hpp"
@@ -124,52 +122,16 @@ private:
   }
 };
 
-Result<std::array<double, 3>> hemisphere_option(const DeviceSpec& spec) {
-  const auto option = spec.options.find("hemisphere");
-  if (option == spec.options.end()) return Options{}.hemisphere;
-  const Error wrong{Errc::usage, spec.text + ": option hemisphere must be three numbers from -1 to "
-                                             "1, e.g. 1,0,0 for the front, or 0,0,0 to follow"};
-  std::array<double, 3> zenith{};
-  ItemReader items(option->second, ',');
-  for (double& component : zenith) {
-    const auto number = to_finite_number(items.next());
-    if (!number || *number < -1.0 || *number > 1.0) return wrong;
-    component = *number;
-  }
-  if (!items.has_ended()) return wrong;
-  return zenith;
-}
-
-Result<Options> options_of(const DeviceSpec& spec, std::span<const std::uint16_t> stations) {
-  Options options;
-  options.stations.assign(stations.begin(), stations.end());
-  for (const std::uint16_t station : stations)
-    if (station < 1 || station > max_stations)
-      return Error{Errc::usage, spec.text + ": option station must be 1 to 4"};
-  if (spec.options.count("baud") > 0) {
-    const auto baud = number_option(spec, "baud", {115'200, 57'600, 38'400, 19'200, 9'600});
-    if (!baud) return baud.error();
-    if (const auto why = too_slow(*baud)) return Error{Errc::usage, spec.text + ": " + *why};
-    options.baud = *baud;
-  }
-  const auto hemisphere = hemisphere_option(spec);
-  if (!hemisphere) return hemisphere.error();
-  options.hemisphere = *hemisphere;
-  const auto filter = word_option(spec, "filter", {"off", "on"});
-  if (!filter) return filter.error();
-  options.is_filtered = *filter == "on";
-  return options;
-}
-
 } // namespace
 
 Result<std::unique_ptr<Tracker>> open_fastrak(const DeviceSpec& spec,
                                               std::span<const std::uint16_t> stations) {
-  if (auto allowed = allow_options(spec, {"station", "baud", "hemisphere", "filter"}); !allowed)
-    return allowed.error();
-  if (auto named = require_port(spec, "fastrak:/dev/ttyUSB0"); !named) return named.error();
-  auto options = options_of(spec, stations);
+  auto options = polhemus::options_of(spec, stations, {115'200, 57'600, 38'400, 19'200, 9'600});
   if (!options) return options.error();
+  if (*std::max_element(stations.begin(), stations.end()) > max_stations)
+    return Error{Errc::usage, spec.text + ": option station must be 1 to 4"};
+  if (const auto why = options->baud ? too_slow(*options->baud) : std::nullopt)
+    return Error{Errc::usage, spec.text + ": " + *why};
   const int baud = options->baud.value_or(bauds.front());
   return open_stream_tracker(spec.text, follow_port(spec.target, baud),
                              std::make_unique<FastrakProtocol>(*std::move(options)),

@@ -1,7 +1,6 @@
 #include "fastrak/fastrak_identity.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <string_view>
 
@@ -19,14 +18,6 @@ constexpr auto single_answer_time = 1000ms;
 constexpr auto stations_time = 300ms;
 constexpr auto pace = 10ms; ///< after each command: no source says how many fit into its buffer
 
-std::vector<int> bauds_to_try(const Options& options, int first) {
-  if (options.baud) return {*options.baud};
-  std::vector<int> order{first};
-  for (const int baud : bauds)
-    if (baud != first) order.push_back(baud);
-  return order;
-}
-
 /// Who answered, and at which rate.
 struct Greeting {
   Status status;
@@ -40,7 +31,7 @@ std::optional<Greeting> greet(Transport& transport, TextDialogue& dialogue, cons
     status = find_status(heard);
     return status.has_value();
   };
-  const std::vector<int> order = bauds_to_try(options, first_baud);
+  const std::vector<int> order = polhemus::bauds_to_try(options, first_baud, bauds);
   // The CR is for a tracker that waits for the rest of a command.
   for (const std::string& begin : {std::string(stop_command), "\r" + std::string(stop_command)}) {
     for (const int baud : order) {
@@ -58,30 +49,18 @@ std::optional<Greeting> greet(Transport& transport, TextDialogue& dialogue, cons
 }
 
 Error stranger(const std::string& source, const Options& options, bool is_silent) {
-  std::string tried;
-  for (const int baud : bauds_to_try(options, bauds.front()))
-    tried += (tried.empty() ? "" : ", ") + std::to_string(baud);
+  const auto tried = polhemus::bauds_to_try(options, bauds.front(), bauds);
   return {Errc::no_device,
           source +
               (is_silent ? ": nothing comes from it" : ": what is there is no FASTRAK, or busy") +
               "; is the tracker switched on, is this its port, and is its line set to 8 bits and a "
               "baud rate of " +
-              tried + "? If so, restart it: switch it off and on, or send it ^Y, and wait 10 s"};
+              polhemus::listed(tried) +
+              "? If so, restart it: switch it off and on, or send it ^Y, and wait 10 s"};
 }
 
 std::string station_command(char command, std::uint16_t station, std::string_view parameters) {
   return std::string{command, station_digit(station)}.append(parameters);
-}
-
-std::string hemisphere_parameters(const std::array<double, 3>& zenith) {
-  std::string text;
-  for (const double component : zenith) {
-    std::array<char, 32> digits{};
-    const auto end =
-        std::to_chars(digits.begin(), digits.end(), component, std::chars_format::fixed, 4).ptr;
-    text.append(",").append(digits.begin(), end);
-  }
-  return text + "\r";
 }
 
 class Setup {
@@ -115,7 +94,8 @@ public:
     for (const std::uint16_t station : options_.stations) {
       command(station_command('O', station, record_items));
       command(station_command('I', station, ",0\r")); // records also while it is at rest [M 53]
-      command(station_command('H', station, hemisphere_parameters(options_.hemisphere)));
+      command(station_command('H', station,
+                              polhemus::hemisphere_parameters(options_.hemisphere) + "\r"));
     }
     command(centimetres_command);
     command(no_stylus_command);
@@ -180,13 +160,9 @@ private:
 } // namespace
 
 std::optional<std::string> too_slow(int baud) {
-  const int carried = baud / bits_per_byte;
-  const int needed = static_cast<int>(records_per_second) * static_cast<int>(record_bytes);
-  if (carried >= needed) return std::nullopt;
-  return "a line of " + std::to_string(baud) + " baud carries " + std::to_string(carried) +
-         " bytes per second, and the tracker's 120 records of " + std::to_string(record_bytes) +
-         " bytes need " + std::to_string(needed) +
-         "; set its switches to 115200 or 57600, then switch it off and on";
+  auto why = polhemus::too_slow(baud, record_bytes, records_per_second);
+  if (why) *why += "; set the tracker's switches to 115200 or 57600, then switch it off and on";
+  return why;
 }
 
 Result<Identity> identify(Transport& transport, TextDialogue& dialogue, const std::string& source,

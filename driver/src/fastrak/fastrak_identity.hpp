@@ -1,27 +1,18 @@
 #pragma once
 // The dialogue with a FASTRAK: which one it is, which stations it has, and its settings.
 
-#include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <nendo/base/result.hpp>
 
 #include "fastrak/fastrak_protocol.hpp"
+#include "polhemus/polhemus_options.hpp"
 #include "stream/text_dialogue.hpp"
 
 namespace nendo::driver::fastrak {
 
-struct Options {
-  std::vector<std::uint16_t> stations; ///< in the order of the request
-  std::optional<int> baud;             ///< else each of `bauds` is tried
-  /// From the transmitter to the zenith of the half space in which receivers are. The default is
-  /// the front, as [M 50] has it, where a table's hands are.
-  std::array<double, 3> hemisphere{1, 0, 0};
-  bool is_filtered = false;
-};
+using polhemus::Options;
 
 struct Identity {
   int baud = 0;

@@ -1,10 +1,10 @@
 #include "fastrak/fastrak_parser.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 
 #include <nendo/base/byte_reader.hpp>
+
+#include "polhemus/pose_floats.hpp"
 
 namespace nendo::driver::fastrak {
 namespace {
@@ -25,14 +25,6 @@ bool is_error(std::byte byte) noexcept {
   return letter == ' ' || (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z');
 }
 
-bool is_in_reach(double coordinate_cm) noexcept {
-  return std::abs(coordinate_cm) <= max_coordinate_cm; // false for NaN
-}
-
-double f32_le(ByteReader& reader) noexcept {
-  return static_cast<double>(std::bit_cast<float>(reader.u32_le()));
-}
-
 } // namespace
 
 std::optional<Record> decode_record(std::span<const std::byte, record_bytes> frame) noexcept {
@@ -42,18 +34,7 @@ std::optional<Record> decode_record(std::span<const std::byte, record_bytes> fra
   record.station = station_of(static_cast<std::byte>(reader.u8()));
   record.error = static_cast<char>(reader.u8());
   if (record.station == 0 || !is_error(frame[2])) return std::nullopt;
-  bool good = true;
-  for (double& coordinate_m : record.position_m) {
-    const double coordinate_cm = f32_le(reader);
-    good = good && is_in_reach(coordinate_cm);
-    coordinate_m = coordinate_cm / 100.0;
-  }
-  double squares = 0.0;
-  for (const std::size_t k : {3U, 0U, 1U, 2U}) { // w is sent first
-    record.turn_xyzw[k] = f32_le(reader);
-    squares += record.turn_xyzw[k] * record.turn_xyzw[k];
-  }
-  good = good && std::abs(std::sqrt(squares) - 1.0) <= max_norm_error;
+  bool good = polhemus::read_pose(reader, record.position_m, record.turn_xyzw);
   good = good && reader.u8() == '\r' && reader.u8() == '\n';
   return good ? std::optional(record) : std::nullopt;
 }

@@ -24,7 +24,6 @@ namespace nendo::driver::fastrak {
 /// Rates of the line, set by switches at the back [M 33]: laboratories' first, and VRPN's default
 /// before the slowest.
 inline constexpr std::array bauds{115'200, 38'400, 19'200, 9'600, 57'600};
-inline constexpr int bits_per_byte = 10;
 
 // Commands of one letter [M 34-83].
 inline constexpr std::string_view stop_command = "c";   ///< ends the stream [M 41]
@@ -57,9 +56,6 @@ inline constexpr std::string_view record_items = ",2,11,1\r";
 // centimetres, the quaternion w, x, y, z, all as 32-bit floats, low byte first, CR, LF.
 inline constexpr std::size_t record_bytes = 33;
 inline constexpr char record_begin = '0';
-/// Further away than any transmitter reaches: that of long range, 4.6 m [?].
-inline constexpr double max_coordinate_cm = 500.0;
-inline constexpr double max_norm_error = 0.002; ///< how far a quaternion may be off [?]
 
 /// One station after the other, so 120 records per second of one to four stations [M].
 inline constexpr double records_per_second = 120.0;
