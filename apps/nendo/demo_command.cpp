@@ -14,6 +14,7 @@
 
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/emulator/served_emulator.hpp>
+#include <nendo/flow/sculptor.hpp>
 #include <nendo/sculpting/placing.hpp>
 #include <nendo/version.hpp>
 
@@ -68,7 +69,7 @@ Result<DemoDevice> emulate_glove(Side side, const Options& demo) {
   options.rate_hz = rate_hz;
   options.seed = 7;
   if (demo.is_face()) options.motion = "faces";
-  if (demo.is_space()) options.motion = "pinch";
+  if (demo.is_space()) options.motion = "rest";
   return serve(options);
 }
 
@@ -101,6 +102,22 @@ std::string beside(const std::string& out, const char* ending) {
   return std::filesystem::path(out).replace_extension(ending).string();
 }
 
+/// A ball that is large enough to walk round. Fingertips in type 2 push it inwards along their
+/// paths.
+void set_space(session::RunOptions& run) {
+  const flow::Mode mode = run.loop.sculptor.mode;
+  if (mode == flow::Mode::clay) {
+    run.model_size_m = sculpting::usual_size_m(mode);
+    return;
+  }
+  run.model_size_m = 0.6;
+  run.radius = "6cm";
+  if (mode != flow::Mode::type2) return;
+  flow::LoopSettings settings = flow::plain_settings_of(run.loop.sculptor);
+  settings.brushes.fill(deform::Brush::push);
+  flow::set_plain_settings(run.loop.sculptor, settings);
+}
+
 Result<session::RunOptions> run_options(const Options& options) {
   const auto mode = flow::mode_named(options.mode);
   const bool is_clay_in_space = options.is_space() && mode == flow::Mode::clay;
@@ -120,17 +137,14 @@ Result<session::RunOptions> run_options(const Options& options) {
   if (auto fine = cli::check_place("--picture", options.picture, {".png"}); !fine)
     return fine.error();
   session::RunOptions run;
-  run.mesh = cli::shipped_model(is_clay_in_space     ? "clay.ply"
-                                : options.is_space() ? "moai.obj"
-                                                     : options.what + ".obj")
-                 .string();
-  if (is_clay_in_space) run.model_size_m = sculpting::usual_size_m(*mode);
+  run.mesh = cli::shipped_model(options.is_space() ? "clay.ply" : options.what + ".obj").string();
   run.out = options.out;
   if (!makes_strip(options)) run.picture = options.picture;
   run.duration_s = options.duration_s;
   run.calibration.calibration = "none"; // what is stored is a real hand's
   run.loop.rate_hz = rate_hz;
   run.loop.sculptor.mode = *mode;
+  if (options.is_space()) set_space(run);
   run.recording.file = options.record;
   if (options.record.empty() && options.what != "clay") { // which records nothing
     run.recording.file = beside(options.out, ".nendo");
@@ -139,7 +153,7 @@ Result<session::RunOptions> run_options(const Options& options) {
   }
   if (auto fine = run.recording.check(run.out, run.loop.switch_action); !fine) return fine.error();
   if (!options.is_face()) {
-    if (!is_clay_in_space) run.loop.sculptor.deformer.injective.emplace();
+    if (!options.is_space()) run.loop.sculptor.deformer.injective.emplace();
     return run;
   }
   run.puppet_file = cli::shipped_model("face.puppet.toml").string();

@@ -49,7 +49,6 @@ constexpr std::array own_drivers{
     TrackerDriver{"osc", "osc:[ADDRESS:]PORT/left|right[?position=/ADDR&rotation=/ADDR]",
                   "a phone or a program that sends poses by OSC over UDP", osc::take_osc_side,
                   osc::open_osc},
-
     TrackerDriver{"liberty", "liberty:PATH[?station=N&baud=N&hemisphere=X,Y,Z&filter=on|off]",
                   "Polhemus LIBERTY, PATRIOT, Latus at a serial port", take_numbered_station,
                   liberty::open_liberty},

@@ -16,7 +16,9 @@ using Quaternion = std::array<double, 4>; // x y z w
 
 constexpr double full_turn_rad = 2.0 * std::numbers::pi;
 constexpr double orbit_radius_m = 0.3;
-constexpr double orbit_turn_s = 12.0;
+constexpr double orbit_turn_s = 6.0;
+constexpr double sway_m = 0.1;
+constexpr double sway_s = 13.0;
 constexpr double cone_rad = 25.0 * std::numbers::pi / 180.0;
 constexpr double circle_s = 2.0;
 constexpr double cross_s = 4.0;
@@ -67,10 +69,12 @@ ReceiverPose rest(std::uint16_t station, std::uint32_t seed, double time_s) noex
 
 ReceiverPose orbit(std::uint16_t station, double time_s) noexcept {
   const double angle = full_turn_rad * eased(time_s) / orbit_turn_s;
+  const double sway = sway_m * std::sin(full_turn_rad * eased(time_s) / sway_s);
   const Quaternion walk = about_z(angle);
   const Vector from_centre = rotated(walk, {0.0, orbit_radius_m * side_of(station), 0.0});
   const Quaternion palm_inwards = about_x(0.25 * full_turn_rad * side_of(station));
-  return receiver_at({0.5 + from_centre[0], from_centre[1], -0.1}, product(walk, palm_inwards));
+  return receiver_at({0.5 + from_centre[0], from_centre[1], sway - 0.1},
+                     product(walk, palm_inwards));
 }
 
 ReceiverPose table(std::uint16_t station, double time_s) noexcept {

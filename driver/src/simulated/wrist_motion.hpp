@@ -15,7 +15,8 @@ namespace nendo::driver {
 
 enum class WristMotion : std::uint8_t {
   rest,  ///< a hand that is held still, with tremor only
-  orbit, ///< odd stations (left hands) and even ones walk round an object, with palms inwards
+  orbit, ///< odd stations (left hands) and even ones walk round an object, up and down, with palms
+         ///< inwards
   table, ///< the exercise for the calibration: the hand lies on a table, the elbow draws circles
   cross, ///< to and fro through the transmitter's plane x = 0
 };
