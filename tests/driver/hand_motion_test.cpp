@@ -12,6 +12,7 @@
 #include <nendo/driver/simulated_glove.hpp>
 
 #include "simulated/typical_wearer.hpp"
+#include "simulated/wrist_motion.hpp"
 
 namespace hand_motion_test {
 
@@ -60,10 +61,57 @@ TEST_SUITE("hand_motion") {
   TEST_CASE("motions have the names that motion_names() lists") {
     for (const auto name : nendo::driver::motion_names())
       CHECK(nendo::driver::find_motion(name));
-    CHECK(nendo::driver::motion_names().size() == motions.size());
+    CHECK(nendo::driver::motion_names().size() == motions.size() + 1); // and `table`
     CHECK(*nendo::driver::find_motion("sculpt") == Motion::sculpt);
     CHECK_FALSE(nendo::driver::find_motion("dance"));
     CHECK_FALSE(nendo::driver::find_motion(""));
+  }
+
+  TEST_CASE("on the table, the hand stays as it is while the forearm turns") {
+    // The wrist turns about the vertical first, to the thumb, and then towards the palm. In the
+    // tracker's axes the vertical points down, and y to the right.
+    for (const Side side : sides) {
+      const HandMotion motion(Motion::table, side, 1);
+      const auto at = [&](double time_s) {
+        const JointAngles angles = motion.at(time_s);
+        const double yaw = (side == Side::right ? 1.0 : -1.0) *
+                           angles[static_cast<std::size_t>(Sensor::wrist_yaw)];
+        const double pitch = angles[static_cast<std::size_t>(Sensor::wrist_pitch)];
+        const auto pose = nendo::driver::receiver_pose(nendo::driver::WristMotion::table,
+                                                       side == Side::left ? 1 : 2, 1, time_s);
+        // The fingers' direction and the thumb's (of a right hand) in the forearm's axes x, y, z.
+        using Vector = std::array<double, 3>;
+        const auto about_z = [](const Vector& v, double angle) {
+          return Vector{std::cos(angle) * v[0] - std::sin(angle) * v[1],
+                        std::sin(angle) * v[0] + std::cos(angle) * v[1], v[2]};
+        };
+        const auto about_y = [](const Vector& v, double angle) {
+          return Vector{std::cos(angle) * v[0] + std::sin(angle) * v[2], v[1],
+                        -std::sin(angle) * v[0] + std::cos(angle) * v[2]};
+        };
+        const auto by_pose = [&](const Vector& v) { // 2 u (u v) + (w^2 - u^2) v + 2 w u x v
+          const auto& q = pose.turn_xyzw;
+          const double uv = q[0] * v[0] + q[1] * v[1] + q[2] * v[2];
+          const double uu = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
+          const Vector cross{q[1] * v[2] - q[2] * v[1], q[2] * v[0] - q[0] * v[2],
+                             q[0] * v[1] - q[1] * v[0]};
+          Vector turned{};
+          for (std::size_t k = 0; k < 3; ++k)
+            turned[k] = 2 * uv * q[k] + (q[3] * q[3] - uu) * v[k] + 2 * q[3] * cross[k];
+          return turned;
+        };
+        for (const Vector& v : {Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}}) {
+          const Vector seen = by_pose(about_z(about_y(v, -pitch), -yaw));
+          for (std::size_t k = 0; k < 3; ++k)
+            CHECK(seen[k] == doctest::Approx(v[k]).epsilon(1e-9));
+        }
+        return pitch;
+      };
+      double most = 0.0;
+      for (double time_s = 0.0; time_s < 10.0; time_s += 0.05)
+        most = std::max(most, at(time_s));
+      CHECK(most > 20.0 * degree);
+    }
   }
 
   TEST_CASE("joint ranges are those of a hand") {

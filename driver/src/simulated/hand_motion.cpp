@@ -9,6 +9,8 @@
 
 #include <nendo/driver/simulated_glove.hpp>
 
+#include "simulated/wrist_motion.hpp"
+
 namespace nendo::driver {
 namespace {
 
@@ -22,11 +24,12 @@ struct MotionName {
   std::string_view name;
   Motion motion;
 };
-constexpr std::array<MotionName, 6> motions{{{"rest", Motion::rest},
+constexpr std::array<MotionName, 7> motions{{{"rest", Motion::rest},
                                              {"wave", Motion::wave},
                                              {"pinch", Motion::pinch},
                                              {"grasp", Motion::grasp},
                                              {"sculpt", Motion::sculpt},
+                                             {"table", Motion::table},
                                              {"faces", Motion::faces}}};
 
 constexpr std::size_t mcp_at = 0, pip_at = 1; ///< in a row of finger_sensors
@@ -245,6 +248,7 @@ Pose gesture(Motion motion, Side side, const Character& hand, double time_s) noe
   Pose add{};
   switch (motion) {
   case Motion::rest:
+  case Motion::table: // has no relaxed hand
     return add;
   case Motion::wave:
     add = wave(hand, time_s);
@@ -265,6 +269,17 @@ Pose gesture(Motion motion, Side side, const Character& hand, double time_s) noe
   slot(add, Sensor::wrist_pitch) += 6.0 * sine(0.11 * time_s * hand.tempo + hand.phase);
   slot(add, Sensor::wrist_yaw) += 3.0 * sine(0.17 * time_s * hand.tempo + hand.phase);
   return add;
+}
+
+// The forearm turns about the tracker's y, to the right, and about its z, down. The hand stays, so
+// it extends as the wrist is raised, and turns to the left, which is towards a right hand's thumb,
+// as the forearm turns to the right.
+JointAngles on_table(Side side, double time_s) noexcept {
+  const ForearmAngles forearm = forearm_angles(time_s);
+  JointAngles angles{};
+  slot(angles, Sensor::wrist_pitch) = forearm.pitch_rad;
+  slot(angles, Sensor::wrist_yaw) = side == Side::right ? forearm.yaw_rad : -forearm.yaw_rad;
+  return angles;
 }
 
 // Physiological tremor: 8 to 12 Hz, 0.2 degrees at most.
@@ -330,6 +345,7 @@ HandMotion::HandMotion(Motion motion, Side side, std::uint32_t seed) noexcept
 
 JointAngles HandMotion::at(double time_s) const noexcept {
   assert(time_s >= 0.0);
+  if (motion_ == Motion::table) return on_table(side_, time_s);
   constexpr double growth_s = 1.0;
   const double size = smoothstep(0.0, growth_s, time_s);
   const Pose add = gesture(motion_, side_, character_, time_s);

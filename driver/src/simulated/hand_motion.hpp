@@ -18,6 +18,8 @@ enum class Motion : std::uint8_t {
   pinch,  ///< the thumb meets each finger in turn
   grasp,  ///< the whole hand closes and opens
   sculpt, ///< pull far out by the wrist, press in, knead: cycles of about 8 s
+  table,  ///< a flat hand on a table, while the elbow draws circles: the wrist's joints of the
+          ///< tracker's motion `table` (wrist_motion.hpp), in step with it from the start on
   faces,  ///< hands that play a face: smile, frown, wonder, wink, pout, talk, laugh, 1.6 s each
 };
 
@@ -43,8 +45,8 @@ JointRange joint_range(Sensor sensor) noexcept;
 NENDO_API double part_of_range(const JointAngles& angles, Sensor sensor) noexcept;
 
 /// The motion of one hand. It starts at time 0 in the relaxed pose and grows to its full size
-/// within a second. Angles are continuously differentiable. Two hands of one seed move alike, but
-/// not in step.
+/// within a second, except for `table`. Angles are continuously differentiable. Two hands of one
+/// seed move alike, but not in step.
 class NENDO_API HandMotion {
 public:
   HandMotion(Motion motion, Side side, std::uint32_t seed) noexcept;

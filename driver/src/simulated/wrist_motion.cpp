@@ -19,8 +19,15 @@ constexpr double orbit_radius_m = 0.3;
 constexpr double orbit_turn_s = 6.0;
 constexpr double sway_m = 0.1;
 constexpr double sway_s = 13.0;
-constexpr double cone_rad = 25.0 * std::numbers::pi / 180.0;
+// The circles of the motion `table`: within the range of a wrist, and of uneven size and speed, as
+// a person draws them. Without that, only a hand that lies exactly flat would show when they were.
+constexpr double pitch_cone_rad = 24.0 * std::numbers::pi / 180.0;
+constexpr double yaw_cone_rad = 16.0 * std::numbers::pi / 180.0;
 constexpr double circle_s = 2.0;
+constexpr double tempo_s = 6.1;
+constexpr double tempo_share = 0.2; ///< part of the speed that changes
+constexpr double size_s = 4.3;
+constexpr double size_share = 0.1;
 constexpr double cross_s = 4.0;
 constexpr double cross_half_m = 0.3;
 constexpr double tremor_m = 0.0003;
@@ -80,7 +87,7 @@ ReceiverPose orbit(std::uint16_t station, double time_s) noexcept {
 ReceiverPose table(std::uint16_t station, double time_s) noexcept {
   const ForearmAngles forearm = forearm_angles(time_s);
   return receiver_at({0.4, 0.2 * side_of(station), 0.05},
-                     product(about_z(forearm.yaw_rad), about_y(forearm.pitch_rad)));
+                     product(about_y(forearm.pitch_rad), about_z(forearm.yaw_rad)));
 }
 
 ReceiverPose cross(std::uint16_t station, double time_s) noexcept {
@@ -104,8 +111,11 @@ std::vector<std::string_view> wrist_motion_names() {
 }
 
 ForearmAngles forearm_angles(double time_s) noexcept {
-  const double phase = full_turn_rad * time_s / circle_s;
-  return {cone_rad * std::cos(phase), cone_rad * std::sin(phase)};
+  const double phase =
+      full_turn_rad * time_s / circle_s +
+      tempo_share * tempo_s / circle_s * std::sin(full_turn_rad * time_s / tempo_s);
+  const double size = 1.0 + size_share * std::sin(full_turn_rad * time_s / size_s);
+  return {size * yaw_cone_rad * std::cos(phase), size * pitch_cone_rad * std::sin(phase)};
 }
 
 ReceiverPose receiver_pose(WristMotion motion, std::uint16_t station, std::uint32_t seed,

@@ -38,7 +38,8 @@ NENDO_API ReceiverPose receiver_pose(WristMotion motion, std::uint16_t station, 
                                      double time_s) noexcept;
 
 /// The angles of the forearm in the motion `table`, in radians, about the axes z and y of the
-/// transmitter. The hand is still, so the wrist's joints turn by the opposite angles.
+/// transmitter; it turns about y first, and about its own z then. The hand is still, so the wrist's
+/// joints turn by the opposite angles, in the order that HandSkeleton has.
 struct ForearmAngles {
   double yaw_rad = 0.0;
   double pitch_rad = 0.0;

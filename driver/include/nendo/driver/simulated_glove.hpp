@@ -14,7 +14,7 @@
 namespace nendo::driver {
 
 /// Returns the names of the built-in motions of simulated and emulated hands: rest, wave, pinch,
-/// grasp, sculpt, faces.
+/// grasp, sculpt, table, faces.
 NENDO_API std::vector<std::string_view> motion_names();
 
 /// Parses `sim:MOTION?seed=N&rate=HZ&hand=left|right&sensors=18|22`; the motion and all options are
