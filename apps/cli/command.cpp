@@ -1,5 +1,6 @@
 #include "cli/command.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -157,8 +158,14 @@ std::string unexpected(const CLI::App& program) {
   return "no option " + name + (meant.empty() ? "" : "; did you mean " + meant + "?");
 }
 
-/// Returns an error about a word that is no command. A --help after it would hide it, because help
-/// ends the parsing.
+bool takes_arguments(const CLI::App& app) {
+  const auto options = app.get_options();
+  return std::any_of(options.begin(), options.end(),
+                     [](const CLI::Option* option) { return option->get_positional(); });
+}
+
+/// Returns an error about a word that is neither a command nor an argument. A --help after it would
+/// hide it, because help ends the parsing.
 std::optional<std::string> unknown_command(CLI::App& program, int argc, char** argv) {
   const CLI::App* at = &program;
   std::string path = "nendo";
@@ -167,6 +174,7 @@ std::optional<std::string> unknown_command(CLI::App& program, int argc, char** a
     if (name.empty() || name.starts_with('-') || at->get_subcommands({}).empty()) break;
     const auto named =
         at->get_subcommands([&](const CLI::App* command) { return command->get_name() == name; });
+    if (named.empty() && takes_arguments(*at)) break;
     if (named.empty()) {
       const std::string meant = nearest_word(name, command_names(*at));
       return "no command " + name + "; " +
@@ -368,7 +376,10 @@ void Command::set_footer(const std::string& text) {
 }
 
 void Command::on_chosen(std::function<int()> command) {
-  app_->callback([chosen = chosen_, command = std::move(command)] { *chosen = command; });
+  // CLI11 calls this after the callbacks of subcommands.
+  app_->callback([app = app_, chosen = chosen_, command = std::move(command)] {
+    if (app->get_subcommands().empty()) *chosen = command;
+  });
 }
 
 void Command::on_chosen(std::function<Result<void>()> command) {

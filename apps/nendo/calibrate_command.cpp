@@ -375,4 +375,5 @@ void nendo::app::add_calibrate(cli::Command& program) {
     footer += " " + std::string(hand::pose_of(id).name);
   command.set_footer(footer + ".\nThe other commands use the calibration automatically; `nendo "
                               "calibration` lists, compares and exports calibrations.");
+  add_calibrate_tracker(command);
 }

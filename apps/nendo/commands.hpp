@@ -39,6 +39,8 @@ void add_run(cli::Command& program);
 void add_stress(cli::Command& program);
 void add_udev(cli::Command& program);
 void add_view(cli::Command& program); ///< `nendo view`: the same as run in a window
+/// Adds the command tracker to `nendo calibrate`.
+void add_calibrate_tracker(cli::Command& calibrate);
 /// Adds the commands import and export to `nendo calibration`.
 void add_calibration_exchange(cli::Command& calibration);
 
