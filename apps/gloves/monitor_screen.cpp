@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
 
 #include <nendo/base/text.hpp>
-#include <nendo/driver/record_counts.hpp>
 #include <nendo/hand/joint_angles.hpp>
+
+#include "gloves/screen_text.hpp"
 
 namespace nendo::gloves {
 namespace {
@@ -17,42 +17,6 @@ constexpr int count_width = 6;
 constexpr int angle_width = 9; // " -123 deg"
 constexpr int min_bar = 8;
 constexpr int column_gap = 2;
-
-std::string fixed(double value, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, std::clamp(value, -1e9, 1e9));
-  return text;
-}
-
-std::string right_aligned(const std::string& text, int width) {
-  const int blanks = std::max(0, width - static_cast<int>(text.size()));
-  return std::string(static_cast<std::size_t>(blanks), ' ') + text;
-}
-
-std::string cut(std::string text, int width) {
-  const auto most = static_cast<std::size_t>(std::max(width, 0));
-  if (text.size() <= most) return text;
-  text.resize(most);
-  if (most > 0) text.back() = '~';
-  return text;
-}
-
-// Puts `right` at the end of the line, and cuts `left` for it, unless hardly anything would be
-// left.
-std::string both_ends(const std::string& left, const std::string& right, int width) {
-  const int space = width - static_cast<int>(right.size()) - 2;
-  if (right.empty() || space < 20) return cut(left, width);
-  std::string line = cut(left, space);
-  line.resize(static_cast<std::size_t>(space) + 2, ' ');
-  return line + right;
-}
-
-// Returns a number in few characters, so that the text behind it stays on the line.
-std::string short_number(std::uint64_t number) {
-  if (number < 100'000) return std::to_string(number);
-  if (number < 100'000'000) return std::to_string(number / 1000) + "k";
-  return std::to_string(number / 1'000'000) + "M";
-}
 
 std::string on_or_off(bool on) {
   return on ? "on" : "off";
@@ -70,56 +34,6 @@ std::string glove_line(const MonitorPicture& picture, int width) {
     right += ", switch " + on_or_off(position == WristSwitch::on);
   if (info.abilities.light) right += ", light " + on_or_off(picture.light);
   return both_ends(printable(info.source + ": " + info.model), right, width);
-}
-
-// Losses on the line and losses in the program have names of their own, as everywhere.
-std::string losses(const driver::GloveInfo& info, const driver::StreamStats& stats) {
-  const driver::RecordCounts counts = driver::counts_of(stats);
-  std::string text;
-  const auto add = [&](std::uint64_t count, std::string_view what) {
-    text.append(text.empty() ? "" : ", ").append(short_number(count)).append(" ").append(what);
-  };
-  const auto add_any = [&](std::uint64_t count, std::string_view what) {
-    if (count > 0) add(count, what);
-  };
-  const bool any_lost = counts.missed > 0 || counts.refused > 0 || counts.bad > 0;
-  const bool nothing_lost = !any_lost && counts.counts_missed;
-  if (any_lost && counts.counts_missed) add(counts.sent(), "sent");
-  add(counts.delivered, nothing_lost ? "delivered, nothing lost" : "delivered");
-  if (any_lost && counts.counts_missed) add(counts.missed, "missed");
-  if (any_lost) {
-    add(counts.refused, "refused");
-    add_any(counts.bad, "bad");
-  }
-  add_any(counts.clamped, "values out of range");
-  if (!counts.counts_missed) {
-    const bool slow = !driver::rate_shortfall(info, stats).empty();
-    text += slow ? ", losses on the line: some" : ", losses on the line unknown";
-  }
-  add_any(stats.silences, "silences");
-  add_any(stats.reopened, "reopened");
-  return text;
-}
-
-std::string stream_line(const MonitorPicture& picture, const std::string& keys, int width) {
-  constexpr double silent_after_s = 0.5;
-  std::string text;
-  if (picture.stats.rate_hz > 0.0) text = fixed(picture.stats.rate_hz, 1) + "/s, ";
-  if (!driver::rate_shortfall(*picture.info, picture.stats).empty()) {
-    text = "only " + fixed(picture.stats.rate_hz, 1) + " of " + fixed(picture.info->rate_hz, 1) +
-           "/s, ";
-  }
-  if (picture.sample == nullptr) {
-    text += "no sample yet";
-  } else if (picture.age_s > silent_after_s) {
-    text += "silent for " + fixed(picture.age_s, 1) + " s";
-  } else {
-    text += fixed(1000.0 * std::max(picture.age_s, 0.0), 0) + " ms old";
-  }
-  text += ", " + losses(*picture.info, picture.stats);
-  // --help lists the keys; losses are shown only here.
-  const bool keys_fit = text.size() + 2 + keys.size() <= static_cast<std::size_t>(width);
-  return both_ends(text, keys_fit ? keys : "", width);
 }
 
 /// Returns "index_pip stands still at 255 while the hand moves: ...".
@@ -217,8 +131,10 @@ std::vector<std::string> monitor_lines(const MonitorPicture& picture, cli::Scree
   std::string keys;
   if (picture.keys)
     keys = picture.info->abilities.light ? "q quit, r ranges, l light" : "q quit, r ranges";
+  StreamState stream{picture.stats, picture.info->rate_hz};
+  if (picture.sample != nullptr) stream.age_s = picture.age_s;
   std::vector<std::string> lines{glove_line(picture, size.columns),
-                                 stream_line(picture, keys, size.columns)};
+                                 stream_line(stream, keys, size.columns)};
   if (picture.sample != nullptr && picture.left_out.bits != 0)
     lines.push_back(cut(stuck_text(picture), size.columns));
   if (picture.sample != nullptr)

@@ -1,19 +1,22 @@
-// nendo devices: lists possible gloves, why they are listed, who may open them, and which programs
-// use them. It opens none of them.
+// nendo devices: lists possible gloves and trackers, why they are listed, who may open them, and
+// which programs use them. It opens none of them.
 
 #include <array>
 #include <chrono>
 #include <ctime>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include <nendo/base/advised_command.hpp>
 #include <nendo/driver/device_watcher.hpp>
 #include <nendo/driver/devices.hpp>
 
 #include "cli/cli.hpp"
+#include "gloves/open_tracker.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::devices_command {
@@ -39,6 +42,14 @@ ordered_json json_of(const driver::UsbIdentity& usb) {
           {"interface", usb.interface_number}};
 }
 
+/// Returns the specifications by which the device can be tried as a tracker.
+std::vector<std::string> tracker_specs_of(const GloveCandidate& candidate) {
+  const bool may_be = candidate.kind == driver::DeviceKind::serial_port && !candidate.identified;
+  if (!may_be) return {};
+  return gloves::tracker_specs_of_port(candidate.stable_name.empty() ? candidate.device
+                                                                     : candidate.stable_name);
+}
+
 /// Returns an object with the same keys for every device. A value is null where a device has no
 /// such thing.
 ordered_json json_of(const GloveCandidate& candidate) {
@@ -49,6 +60,7 @@ ordered_json json_of(const GloveCandidate& candidate) {
                     {"kind", driver::name_of(candidate.kind)},
                     {"stable_name", candidate.stable_name},
                     {"glove", candidate.spec},
+                    {"trackers", tracker_specs_of(candidate)},
                     {"description", candidate.description},
                     {"reason", candidate.reason},
                     {"identified", candidate.identified},
@@ -69,6 +81,13 @@ void print_text(const GloveCandidate& candidate) {
   std::cout << candidate.device << ": " << candidate.description << "\n  why        "
             << candidate.reason << "\n  use it as  "
             << (candidate.spec.empty() ? "nothing yet" : candidate.spec);
+  if (const auto trackers = tracker_specs_of(candidate); !trackers.empty()) {
+    std::cout << "\n  or as      ";
+    for (const std::string& spec : trackers)
+      std::cout << (&spec == &trackers.front() ? "" : ", ") << spec;
+    std::cout << ", if it is a tracker: `nendo doctor " << shell_word(trackers.front())
+              << "` tries it";
+  }
   if (candidate.node_missing) {
     std::cout << "\n  may open   no user: the kernel has it, but its device node is missing";
   } else {
@@ -91,7 +110,8 @@ Result<void> list_devices(bool json) {
   for (const auto& candidate : candidates)
     json ? cli::print_line(json_of(candidate)) : print_text(candidate);
   if (candidates.empty() && !json) {
-    std::cout << "No serial port or USB device can be a glove. Plug one in, or use `sim`.\n";
+    std::cout << "No serial port or USB device can be a glove or a tracker. Plug one in, or use "
+                 "`sim`.\n";
   }
   return {};
 }
@@ -152,8 +172,8 @@ Result<void> devices(const Options& options) {
 
 void nendo::app::add_devices(cli::Command& program) {
   using namespace devices_command;
-  cli::Command command =
-      program.add_command("devices", "Lists ports and USB devices that can be gloves, and why");
+  cli::Command command = program.add_command(
+      "devices", "Lists ports and USB devices that can be gloves or trackers, and why");
   Options& options = command.on_chosen<Options>(devices);
   command.add_flag("--json", options.json, "One JSON object per line");
   command.add_flag("--watch", options.watch,

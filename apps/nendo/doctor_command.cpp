@@ -1,4 +1,5 @@
-// nendo doctor: finds problems with gloves on this machine, and the commands that fix them.
+// nendo doctor: finds problems with gloves and trackers on this machine, and the commands that fix
+// them.
 
 #include <algorithm>
 #include <array>
@@ -17,14 +18,17 @@
 #include "cli/cli.hpp"
 #include "doctor/doctor.hpp"
 #include "gloves/open_hand.hpp"
+#include "gloves/open_tracker.hpp"
 #include "gloves/stuck_sensors.hpp"
 #include "nendo/commands.hpp"
+#include "nendo/tracker_commands.hpp"
 
 namespace nendo::app::doctor_command {
 namespace {
 
 struct Options {
-  std::string glove; ///< empty: each identified one
+  std::string device; ///< GLOVE or TRACKER; empty: each identified glove
+  bool is_tracker = false;
   bool json = false;
 };
 
@@ -104,10 +108,12 @@ int examine(const Options& options) {
   std::vector<doctor::Examination> examinations;
   for (const auto check : subjects)
     examinations.push_back(check());
-  if (options.glove.empty()) {
+  if (options.device.empty()) {
     examinations.push_back(check_known_gloves());
   } else {
-    auto examined = check_glove(options.glove);
+    auto examined = gloves::is_tracker(options.device, options.is_tracker)
+                        ? check_tracker(options.device)
+                        : check_glove(options.device);
     if (!examined) return cli::report(examined.error());
     examinations.push_back(*std::move(examined));
   }
@@ -135,12 +141,14 @@ int examine(const Options& options) {
 void nendo::app::add_doctor(cli::Command& program) {
   using namespace doctor_command;
   cli::Command command = program.add_command(
-      "doctor", "Finds problems with gloves on this machine, and how to fix them");
+      "doctor", "Finds problems with gloves and trackers on this machine, and how to fix them");
   Options& options = command.on_chosen<Options>(examine);
   command.add_option(
-      "GLOVE", options.glove,
-      "Also check the sensors of this glove: serial:/dev/ttyUSB0, auto, ...; without it, those "
-      "of each identified glove");
+      "DEVICE", options.device,
+      "Also check the sensors of this GLOVE, or a second of this TRACKER's poses: "
+      "serial:/dev/ttyUSB0, auto, fastrak:/dev/ttyUSB1, ...; without it, the sensors of each "
+      "identified glove");
+  gloves::add_tracker_flag(command, options.is_tracker);
   command.add_flag("--json", options.json, "One JSON object per finding");
   command.set_footer("Exit code 1 if there is a failure, 0 if there are only warnings.");
 }

@@ -1,8 +1,9 @@
-// nendo info: queries a glove.
+// nendo info: queries a glove or a tracker.
 
 #include <algorithm>
 #include <iostream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,9 @@
 #include "cli/cli.hpp"
 #include "gloves/glove_json.hpp"
 #include "gloves/open_hand.hpp"
+#include "gloves/open_tracker.hpp"
 #include "gloves/stuck_sensors.hpp"
+#include "gloves/tracker_text.hpp"
 #include "nendo/commands.hpp"
 
 namespace nendo::app::info_command {
@@ -25,7 +28,8 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Options {
-  std::string glove;
+  std::string device; ///< GLOVE or TRACKER
+  bool is_tracker = false;
   bool json = false;
 };
 
@@ -97,11 +101,15 @@ std::vector<std::string> angles_from(const hand::AngleSources& sources, hand::An
   return names;
 }
 
+std::string rate_text(double rate_hz) {
+  return rate_hz > 0.0 ? fmt::format("{:.6g} Hz", rate_hz) : "unknown";
+}
+
 /// Prints two columns, names and values, that fit 80 characters.
 class Columns {
 public:
-  explicit Columns(const driver::GloveInfo& info) {
-    for (const auto& fact : info.facts)
+  explicit Columns(const std::vector<driver::DeviceFact>& facts) {
+    for (const auto& fact : facts)
       name_width_ = std::max(name_width_, fact.name.size());
   }
   void print(const std::string& name, const std::string& value) const {
@@ -122,6 +130,11 @@ public:
     for (std::size_t at = 0; at + 1 < words.size(); ++at)
       words[at] += ',';
     print_words(std::move(name), words);
+  }
+  void print_facts(std::string_view device, const std::vector<driver::DeviceFact>& facts) const {
+    if (!facts.empty()) std::cout << "\nreported by the " << device << '\n';
+    for (const auto& [name, value] : facts)
+      print(name, value);
   }
 
 private:
@@ -145,13 +158,13 @@ void print_angles(const Columns& columns, SensorMask sensors) {
 }
 
 void print_text(const driver::GloveInfo& info, const std::vector<gloves::SensorAtEnd>& at_end) {
-  const Columns columns(info);
+  const Columns columns(info.facts);
   const auto sensors = names_of(info.sensors);
 
   columns.print("source", info.source);
   columns.print("model", info.model);
   columns.print("hand", std::string(name_of(info.side)));
-  columns.print("rate", info.rate_hz > 0.0 ? fmt::format("{:.6g} Hz", info.rate_hz) : "unknown");
+  columns.print("rate", rate_text(info.rate_hz));
   columns.print("counts", fmt::format("0 to {}, {}", info.counts.max_count,
                                       info.counts.self_calibrated ? "straight to fully bent"
                                                                   : "uncalibrated"));
@@ -161,13 +174,35 @@ void print_text(const driver::GloveInfo& info, const std::vector<gloves::SensorA
   print_angles(columns, info.sensors);
   for (const gloves::SensorAtEnd& found : at_end)
     columns.print_sentence("check", gloves::in_words(found));
-  if (!info.facts.empty()) std::cout << "\nreported by the glove\n";
-  for (const auto& [name, value] : info.facts)
-    columns.print(name, value);
+  columns.print_facts("glove", info.facts);
+}
+
+void print_text(const driver::TrackerInfo& info) {
+  const Columns columns(info.facts);
+  std::vector<std::string> stations;
+  for (const std::uint16_t station : info.stations)
+    stations.push_back(std::to_string(station));
+  columns.print("source", info.source);
+  columns.print("model", info.model);
+  columns.print_list("stations", std::move(stations));
+  columns.print("rate", rate_text(info.rate_hz));
+  columns.print("filter",
+                info.is_filtered ? "the tracker filters its poses" : "none in the tracker");
+  columns.print_sentence("axes", gloves::axes_text(info));
+  columns.print_facts("tracker", info.facts);
+}
+
+Result<void> info_of_tracker(const Options& options) {
+  const auto stations = gloves::open_trackers({&options.device, 1});
+  if (!stations) return stations.error();
+  const driver::TrackerInfo& info = stations->front().tracker->info();
+  options.json ? cli::print_line(gloves::tracker_json(info)) : print_text(info);
+  return {};
 }
 
 Result<void> info(const Options& options) {
-  const auto glove = gloves::open_glove(options.glove);
+  if (gloves::is_tracker(options.device, options.is_tracker)) return info_of_tracker(options);
+  const auto glove = gloves::open_glove(options.device);
   if (!glove) return glove.error();
   const auto at_end = gloves::sensors_at_end(**glove);
   options.json ? print_json((*glove)->info(), at_end) : print_text((*glove)->info(), at_end);
@@ -179,8 +214,10 @@ Result<void> info(const Options& options) {
 
 void nendo::app::add_info(cli::Command& program) {
   using namespace info_command;
-  cli::Command command = program.add_command("info", "Queries a glove: model, sensors, abilities");
+  cli::Command command = program.add_command(
+      "info", "Queries a glove or a tracker: model, sensors or stations, abilities");
   Options& options = command.on_chosen<Options>(info);
-  command.add_option("GLOVE", options.glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
+  command.add_option("DEVICE", options.device, std::string(gloves::device_words)).required();
+  gloves::add_tracker_flag(command, options.is_tracker);
   command.add_flag("--json", options.json, "One JSON object");
 }

@@ -1,5 +1,7 @@
-// nendo monitor: shows what a glove sends, as live bars in a terminal or as JSON lines.
+// nendo monitor: shows what a glove sends, as live bars in a terminal or as JSON lines, or what
+// trackers send.
 
+#include <algorithm>
 #include <cstdint>
 #include <iostream>
 #include <optional>
@@ -9,28 +11,34 @@
 
 #include <unistd.h>
 
+#include <nendo/base/text.hpp>
 #include <nendo/driver/open_glove.hpp>
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/hand/wearer.hpp>
 #include <nendo/sculpting/find_wearer.hpp>
 
 #include "cli/cli.hpp"
+#include "cli/quantities.hpp"
 #include "cli/terminal.hpp"
 #include "gloves/glove_feedback.hpp"
 #include "gloves/glove_json.hpp"
 #include "gloves/monitor_screen.hpp"
 #include "gloves/open_hand.hpp"
+#include "gloves/open_tracker.hpp"
 #include "gloves/stuck_sensors.hpp"
 #include "nendo/commands.hpp"
+#include "nendo/tracker_commands.hpp"
 
 namespace nendo::app::monitor_command {
 namespace {
 
 struct Options {
-  std::string glove;
+  std::vector<std::string> devices; ///< one GLOVE, or TRACKERs
+  bool are_trackers = false;
   bool json = false;
   bool raw = false;
   std::uint64_t count = 0;
+  double duration_s = 0.0; ///< 0: no end
   gloves::CalibrationOptions calibration;
 };
 
@@ -42,6 +50,7 @@ struct Monitored {
   hand::ActiveCalibration& calibrations;     ///< those of `wearer`, or an average hand's
   const sculpting::FoundCalibration& found;  ///< what was found for the glove's own hand
   std::uint64_t max_shown;                   ///< samples to show; 0: no end
+  std::optional<HostTime> end;               ///< nothing: no end
   const hand::Calibration* active = nullptr; ///< that of the latest sample; null: none
   SensorMask left_out{};                     ///< with the latest sample
   gloves::StuckNotices stuck{};
@@ -49,7 +58,8 @@ struct Monitored {
   std::uint64_t shown = 0;
 
   bool may_continue() const {
-    return !cli::stop_requested() && (max_shown == 0 || shown < max_shown);
+    return !cli::stop_requested() && (!end || HostClock::now() < *end) &&
+           (max_shown == 0 || shown < max_shown);
   }
   bool next(GloveSample& sample) {
     if (!may_continue() || !ring.try_pop(sample)) return false;
@@ -105,7 +115,8 @@ void note_losses(const driver::Glove& glove) {
   const auto counts = driver::counts_of(stats);
   if (counts.missed + counts.refused + counts.bad + counts.clamped > 0)
     cli::note(glove.info().source + ": " + driver::in_words(counts));
-  if (const auto shortfall = driver::rate_shortfall(glove.info(), stats); !shortfall.empty())
+  if (const auto shortfall = driver::rate_shortfall(glove.info().rate_hz, stats);
+      !shortfall.empty())
     cli::note(glove.info().source + ": " + shortfall + "; the others did not arrive");
 }
 
@@ -163,9 +174,8 @@ void show_screen(Monitored& monitored) {
   light.put_out();
 }
 
-Result<void> monitor(const Options& options) {
-  if (auto fine = gloves::check(options.calibration); !fine) return fine;
-  const auto glove = gloves::open_glove(options.glove);
+Result<void> monitor_glove(const Options& options) {
+  const auto glove = gloves::open_glove(options.devices.front());
   if (!glove) return glove.error();
   std::optional<hand::Wearer> wearer;
   sculpting::FoundCalibration whose;
@@ -182,8 +192,9 @@ Result<void> monitor(const Options& options) {
   cli::install_stop_signals();
   if (const auto started = (*glove)->start(ring); !started) return started.error();
 
-  Monitored monitored{**glove,      ring,  wearer ? &*wearer : nullptr,
-                      calibrations, whose, options.count};
+  Monitored monitored{**glove,       ring,        wearer ? &*wearer : nullptr, calibrations, whose,
+                      options.count, std::nullopt};
+  if (options.duration_s > 0.0) monitored.end = HostClock::now() + from_seconds(options.duration_s);
   const bool lines = options.json || isatty(STDOUT_FILENO) == 0;
   if (lines) {
     show_lines(monitored);
@@ -195,14 +206,27 @@ Result<void> monitor(const Options& options) {
   return {};
 }
 
+Result<void> monitor(const Options& options) {
+  if (auto fine = gloves::check(options.calibration); !fine) return fine;
+  if (auto fine = cli::check_duration(options.duration_s); !fine) return fine;
+  const bool are_trackers = std::ranges::any_of(options.devices, [&](const std::string& device) {
+    return gloves::is_tracker(device, options.are_trackers);
+  });
+  if (are_trackers)
+    return monitor_trackers({options.devices, options.json, options.count, options.duration_s});
+  if (options.devices.size() == 1) return monitor_glove(options);
+  return Error{Errc::usage, "DEVICE: takes one glove, or several trackers; for " +
+                                printable(options.devices[1]) + " use a second terminal"};
+}
+
 } // namespace
 } // namespace nendo::app::monitor_command
 
 void nendo::app::add_monitor(cli::Command& program) {
   using namespace monitor_command;
-  cli::Command command = program.add_command(
-      "monitor",
-      "Shows what a glove sends: bars in a terminal, JSON lines when piped or asked for");
+  cli::Command command =
+      program.add_command("monitor", "Shows what a glove or trackers send: live in a terminal, "
+                                     "JSON lines when piped or asked for");
   Options& options = command.on_chosen<Options>(monitor);
   command.set_footer(
       "In a bar, # shows the count, and [ ] the min and max so far.\n"
@@ -210,13 +234,22 @@ void nendo::app::add_monitor(cli::Command& program) {
       "An e before degrees: the sensor is stuck, and its angle is estimated from its "
       "neighbours.\n"
       "Keys: q quit, r reset the ranges, l light on and off.\n"
-      "It ends with Ctrl-C, with --count, and when a recording (replay:FILE) ends. \"missed\" "
-      "records were\nlost on the line; \"refused\" ones did not fit into this program's buffer. If "
-      "the losses of a glove\ncannot be counted, its rate is shown if it is too low. Values out of "
-      "range are clamped.");
-  command.add_option("GLOVE", options.glove, "serial:/dev/ttyUSB0, sim, auto, ...").required();
+      "Of a tracker's station: the position in millimetres, the turn in degrees (about z by the\n"
+      "azimuth, then about y by the elevation, then about x by the roll), and the error letter.\n"
+      "It ends with Ctrl-C, with --count or --duration, and when a recording (replay:FILE) ends.\n"
+      "\"missed\" records were lost on the line; \"refused\" ones did not fit into this program's\n"
+      "buffer. If losses cannot be counted, the rate is shown if it is too low. Values out of "
+      "range\n"
+      "are clamped.");
+  command
+      .add_option("DEVICE", options.devices,
+                  "A GLOVE, or a TRACKER or several, as for nendo run: serial:/dev/ttyUSB0, sim, "
+                  "auto, sim:orbit, ...")
+      .required();
+  gloves::add_tracker_flag(command, options.are_trackers);
   command.add_flag("--json", options.json, "One JSON object per line, also in a terminal");
   command.add_flag("--raw", options.raw, "Raw counts only, no angles");
   gloves::add_calibration_options(command, options.calibration, false);
-  command.add_option("--count", options.count, "End after this number of samples");
+  command.add_option("--count", options.count, "End after this number of samples or poses");
+  command.add_duration("--duration", options.duration_s, "End after this time, e.g. 10s");
 }

@@ -37,17 +37,17 @@ std::string in_words(const RecordCounts& counts) {
     text += name == "bad_records" ? "bad records" : clamped ? "values out of range" : name;
   }
   if (!counts.counts_missed)
-    text += "; how many were lost on the line is not known with this glove";
+    text += "; how many were lost on the line is not known with this device";
   return text;
 }
 
-std::string rate_shortfall(const GloveInfo& info, const StreamStats& stats) {
+std::string rate_shortfall(double asked_hz, const StreamStats& stats) {
   constexpr double tolerance = 0.05;
-  const bool known = !stats.counts_missed && info.rate_hz > 0.0 && stats.rate_hz > 0.0;
-  if (!known || stats.rate_hz > (1.0 - tolerance) * info.rate_hz) return {};
+  const bool known = !stats.counts_missed && asked_hz > 0.0 && stats.rate_hz > 0.0;
+  if (!known || stats.rate_hz > (1.0 - tolerance) * asked_hz) return {};
   char text[96];
   std::snprintf(text, sizeof text, "%.1f records per second of the %.1f that were asked for",
-                stats.rate_hz, info.rate_hz);
+                stats.rate_hz, asked_hz);
   return text;
 }
 

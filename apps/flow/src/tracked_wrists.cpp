@@ -65,6 +65,7 @@ void TrackedWrists::restart() noexcept {
 void TrackedWrists::show(Side side, HandFrame& frame) const noexcept {
   frame.tracked = has(side);
   frame.lost = frame.tracked && of(side)->tracking.is_lost();
+  frame.flips = frame.tracked ? of(side)->tracking.counts().flips : 0;
 }
 
 void TrackedWrists::record_latencies(HostTime done, LoopStats& stats) const noexcept {

@@ -7,9 +7,9 @@
 #include <array>
 #include <cstdint>
 #include <string_view>
-#include <vector>
 
 #include <nendo/base/result.hpp>
+#include <nendo/driver/open_tracker.hpp>
 
 namespace nendo::driver {
 
@@ -21,9 +21,8 @@ enum class WristMotion : std::uint8_t {
   cross, ///< to and fro through the transmitter's plane x = 0
 };
 
-/// Returns the motion of that name. Error: usage, naming those there are.
+/// Returns the motion of that name, one of wrist_motion_names(). Error: usage, naming them.
 NENDO_API Result<WristMotion> find_wrist_motion(std::string_view name);
-NENDO_API std::vector<std::string_view> wrist_motion_names();
 
 struct ReceiverPose {
   std::array<double, 3> position_m{};

@@ -46,6 +46,9 @@ open_trackers(std::span<const std::string> specs, std::span<const TrackerDriver>
 NENDO_API Result<void> start_trackers(std::span<const TrackerStation> stations,
                                       std::span<PoseRing* const> rings);
 
+/// Returns the names of the motions of simulated and emulated trackers: rest, orbit, table, cross.
+NENDO_API std::vector<std::string_view> wrist_motion_names();
+
 /// Returns the library's drivers, then `more`.
 NENDO_API std::vector<TrackerDriver> tracker_drivers(std::span<const TrackerDriver> more = {});
 

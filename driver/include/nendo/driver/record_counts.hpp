@@ -1,5 +1,5 @@
 #pragma once
-// Counts of a glove's delivered and lost records, with the same names in every summary: of a run,
+// Counts of a device's delivered and lost records, with the same names in every summary: of a run,
 // of a recording, on screens, in text and in JSON. Losses on the line and losses in the program
 // have different remedies, so they have different names.
 
@@ -44,7 +44,7 @@ by_name(const RecordCounts& counts) noexcept;
 NENDO_API std::string in_words(const RecordCounts& counts);
 
 /// Returns "72.0 records per second of the 90.0 that were asked for" if losses cannot be counted
-/// and the rate is too low by 5 % or more; else an empty string.
-NENDO_API std::string rate_shortfall(const GloveInfo& info, const StreamStats& stats);
+/// and the rate is lower than `asked_hz` (0: unknown) by 5 % or more; else an empty string.
+NENDO_API std::string rate_shortfall(double asked_hz, const StreamStats& stats);
 
 } // namespace nendo::driver

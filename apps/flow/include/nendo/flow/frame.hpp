@@ -36,6 +36,7 @@ struct HandFrame {
   std::uint64_t samples = 0;  ///< received since the loop began
   hand::JointAngles angles{}; ///< the angles of the pose
   SensorMask left_out{};      ///< stuck sensors of its glove, whose angles are estimated
+  std::uint64_t flips = 0;    ///< poses of a tracked wrist that were mirrored back
 };
 
 /// The change that an undo or a redo waits for. The loop's owner must request it

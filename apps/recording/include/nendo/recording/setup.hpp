@@ -58,7 +58,7 @@ struct Setup {
   std::vector<driver::GloveInfo> gloves; ///< indexed by their numbers
   /// Indexed by glove number, also without a loop. Rings are omitted.
   std::vector<flow::HandInput> hands;
-  std::vector<RecordedTracker> trackers; ///< of tracked wrists (HandInput::wrist_source)
+  std::vector<RecordedTracker> trackers; ///< the trackers of HandInput::wrist_source
   std::optional<LoopSetup> loop;         ///< nothing if only gloves were recorded
 };
 

@@ -1,0 +1,138 @@
+// The commands that look at devices, with trackers: info, monitor, doctor, record, run.
+
+#include <cmath>
+#include <csignal>
+#include <set>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "support/json_lines.hpp"
+#include "support/program.hpp"
+#include "support/terminal_program.hpp"
+
+namespace tracker_command_test {
+
+using nendo::test::is_one_line_about;
+using nendo::test::lines_of;
+using nendo::test::TemporaryFolder;
+using nendo::test::TerminalProgram;
+using nendo::test::VtScreen;
+using nlohmann::json;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+} // namespace
+
+TEST_SUITE("tracker commands") {
+  TEST_CASE("info says what the tracker is, by its motion or by --tracker") {
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"info", "sim:orbit?station=2&rate=60"},
+          {"info", "sim:rest?station=2&rate=60", "--tracker"}}) {
+      const auto text = nendo::test::nendo(arguments);
+      CAPTURE(text.err);
+      REQUIRE(text.exit_code == 0);
+      CHECK(contains(text.out, "stations    2\n"));
+      CHECK(contains(text.out, "rate        60 Hz\n"));
+      CHECK(contains(text.out, "axes        x away from the operator, y to the right, z down\n"));
+      for (const auto& line : lines_of(text.out))
+        CHECK(line.size() <= 80);
+      auto with_json = arguments;
+      with_json.emplace_back("--json");
+      const json info = last_object(nendo::test::nendo(with_json));
+      CHECK(contains(info["source"], "sim:"));
+      CHECK(contains(info["model"], "simulated tracker"));
+      CHECK(info["stations"] == json{2});
+      CHECK(info["rate_hz"] == 60.0);
+      CHECK(info["filtered"] == false);
+      CHECK(info["stage_from_tracker_xyzw"] == json{0.5, 0.5, -0.5, 0.5});
+      CHECK(info["facts"].is_object());
+    }
+    CHECK(contains(nendo::test::nendo({"info", "sim:rest"}).out, "sensors     22\n"));
+  }
+
+  TEST_CASE("monitor prints one JSON object a pose, of as many stations as are named") {
+    const auto done = nendo::test::nendo(
+        {"monitor", "sim:orbit?station=1", "sim:orbit?station=2", "--count", "60"});
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    CHECK(contains(done.err, " delivered"));
+    const auto lines = lines_of(done.out);
+    REQUIRE(lines.size() == 60);
+    std::set<int> stations;
+    for (const auto& text : lines) {
+      const json line = json::parse(text);
+      stations.insert(line["station"].get<int>());
+      CHECK(line["source"].get<std::string>().starts_with("sim:orbit"));
+      REQUIRE(line["position_m"].size() == 3);
+      REQUIRE(line["turn_xyzw"].size() == 4);
+      double length = 0.0;
+      for (const double part : line["turn_xyzw"])
+        length += part * part;
+      CHECK(length == doctest::Approx(1.0));
+      for (const auto* key : {"time_s", "measured_s", "device_time_s", "azimuth_deg",
+                              "elevation_deg", "roll_deg", "sequence"})
+        CHECK(line[key].is_number());
+      CHECK(line["error"].is_null());
+    }
+    CHECK(stations == std::set{1, 2});
+  }
+
+  TEST_CASE("monitor ends after its duration, with gloves as with trackers") {
+    for (const std::string device : {"sim:orbit", "sim:wave"}) {
+      const auto done = nendo::test::nendo({"monitor", device, "--json", "--duration", "300ms"});
+      CHECK(done.exit_code == 0);
+      CHECK(lines_of(done.out).size() > 2);
+      CHECK(done.seconds >= 0.3);
+    }
+  }
+
+  TEST_CASE("in a terminal there is a line a station, which fits 80 characters, until q") {
+    TerminalProgram program({"monitor", "sim:orbit?station=1", "sim:orbit?station=2"}, 80, 24);
+    REQUIRE(program.shows("elevation"));
+    REQUIRE(program.shows([](const VtScreen& screen) {
+      const std::string line = screen.line_of("      2 ");
+      return line.find_last_not_of(' ') == 78 && line[78] == '-';
+    }));
+    CHECK(program.screen().shows("q quit"));
+    CHECK(program.screen().faults().empty());
+    CHECK(program.press('q'));
+    CHECK(program.wait() == 0);
+    CHECK(program.is_restored());
+    CHECK(contains(program.screen().transcript(), "elevation")); // it stays
+  }
+
+  TEST_CASE("doctor looks at a second of poses") {
+    const auto done = nendo::test::nendo({"doctor", "sim:orbit"});
+    CAPTURE(done.out);
+    CHECK(contains(done.out, "sim:orbit ("));
+    CHECK(contains(done.out, " 0 refused"));
+    CHECK(contains(done.out, " mm from its origin)"));
+    CHECK_FALSE(contains(done.out, "failure: sim:orbit"));
+  }
+
+  TEST_CASE("a wrong tracker gets one clear line and the right exit code") {
+    for (const std::string command : {"info", "monitor", "doctor"}) {
+      const auto unknown = nendo::test::nendo({command, "bogus:1", "--tracker"});
+      CHECK(unknown.exit_code == 2);
+      CHECK(is_one_line_about(unknown.err, "tracker \"bogus:1\": unknown kind bogus"));
+      const auto motion = nendo::test::nendo({command, "sim:sculpt", "--tracker"});
+      CHECK(motion.exit_code == 2);
+      CHECK(is_one_line_about(motion.err, "orbit"));
+      const auto rate = nendo::test::nendo({command, "sim:orbit?rate=0"});
+      CHECK(rate.exit_code == 2);
+      CHECK(is_one_line_about(rate.err, "option rate"));
+    }
+    const auto mixed = nendo::test::nendo({"monitor", "sim:orbit", "sim:sculpt"});
+    CHECK(mixed.exit_code == 2);
+    const auto gloves = nendo::test::nendo({"monitor", "sim", "sim"});
+    CHECK(gloves.exit_code == 2);
+    CHECK(is_one_line_about(gloves.err, "takes one glove, or several trackers"));
+  }
+}
+
+} // namespace tracker_command_test
