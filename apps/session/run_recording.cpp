@@ -44,8 +44,12 @@ recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands,
                              const std::string& wearer) {
   recording::Setup setup = recording::begin_setup("nendo " NENDO_VERSION);
   setup.wearer = wearer;
-  for (const auto& hand : hands)
+  for (const auto& hand : hands) {
     setup.gloves.push_back(hand.glove->info());
+    if (!hand.wrist) continue;
+    const driver::TrackerStation& station = hand.wrist->station;
+    setup.trackers.push_back({hand.side, station.station, station.tracker->info()});
+  }
   return setup;
 }
 
@@ -74,14 +78,10 @@ std::string RunRecorder::next_name() {
 recording::Setup RunRecorder::setup_now() const {
   recording::Setup setup = begin_setup(hands_, options_.calibration.users());
   setup.hands = placed_.setup.inputs;
-  for (const auto& hand : hands_)
-    if (hand.wrist && !options_.over)
-      setup.trackers.push_back(
-          {hand.side, hand.wrist->station.station, hand.wrist->station.tracker->info()});
   if (options_.over) {
     const auto& gloves = options_.over->take.setup.gloves;
     setup.gloves.insert(setup.gloves.begin(), gloves.begin(), gloves.end());
-    setup.trackers = options_.over->take.setup.trackers;
+    setup.trackers = options_.over->take.setup.trackers; // a take's wrists are its own
   }
   setup.loop = recording::LoopSetup{cli::absolute_name(options_.mesh),
                                     recording::sum_of(model_.vertices),

@@ -40,8 +40,8 @@ struct RecordingOutcome {
   std::optional<recording::Recorded> recorded; ///< nothing: incomplete
 };
 
-/// Returns a setup with the program, the time, the wearer, and the gloves in the order of the
-/// hands.
+/// Returns a setup with the program, the time, the wearer, the gloves in the order of the hands,
+/// and the trackers.
 recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands, const std::string& wearer);
 
 /// Returns the record counts of each glove since its start, in the order of the hands. Thread-safe.

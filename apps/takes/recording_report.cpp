@@ -42,6 +42,12 @@ void print_glove(const driver::GloveInfo& info, const GloveSummary& glove) {
               number(glove.lost));
 }
 
+void print_tracker(const recording::RecordedTracker& tracker) {
+  std::printf("  %-12s %s, %s; station %u\n",
+              (std::string(name_of(tracker.side)) + " wrist").c_str(), tracker.info.source.c_str(),
+              tracker.info.model.c_str(), unsigned{tracker.station});
+}
+
 /// A take in layers plays some joints of a hand over what was recorded before.
 void print_layer(const flow::HandInput& hand, const GloveSummary& glove) {
   std::printf("  %-12s a layer: plays %s; ", "",
@@ -110,6 +116,16 @@ ordered_json gloves_json(const TakeSummary& summary) {
   return gloves;
 }
 
+ordered_json trackers_json(const TakeSummary& summary) {
+  ordered_json trackers = ordered_json::array();
+  for (const auto& [side, station, info] : summary.setup.trackers)
+    trackers.push_back({{"hand", name_of(side)},
+                        {"source", info.source},
+                        {"model", info.model},
+                        {"station", station}});
+  return trackers;
+}
+
 ordered_json loop_json(const TakeSummary& summary) {
   if (!summary.setup.loop) return nullptr;
   const recording::LoopSetup& loop = *summary.setup.loop;
@@ -149,7 +165,12 @@ void print_take(const std::string& file, const TakeSummary& summary) {
     if (at < setup.hands.size() && setup.hands[at].layer)
       print_layer(setup.hands[at], summary.gloves[at]);
   }
-  if (setup.loop) print_loop(summary);
+  for (const recording::RecordedTracker& tracker : setup.trackers)
+    print_tracker(tracker);
+  if (setup.loop)
+    print_loop(summary);
+  else if (summary.poses > 0)
+    std::printf("  %-12s %llu\n", "poses", number(summary.poses));
   if (!summary.marks.empty()) print_marks(summary);
   if (summary.gaps > 0)
     std::printf("  %-12s %llu, of %llu entries that are counted\n", "gaps", number(summary.gaps),
@@ -168,6 +189,8 @@ void print_take_json(const std::string& file, const TakeSummary& summary) {
                           {"wearer", summary.setup.wearer},
                           {"bytes", summary.bytes},
                           {"gloves", gloves_json(summary)},
+                          {"trackers", trackers_json(summary)},
+                          {"poses", summary.poses},
                           {"loop", loop_json(summary)},
                           {"gaps", summary.gaps},
                           {"missing_entries", summary.missing},

@@ -115,6 +115,61 @@ TEST_SUITE("tracker commands") {
     CHECK_FALSE(contains(done.out, "failure: sim:orbit"));
   }
 
+  TEST_CASE("record keeps the poses of wrists, and the recording is a tracker") {
+    const TemporaryFolder folder;
+    const std::string take = (folder.path() / "take.nendo").string();
+    const auto done = nendo::test::nendo(
+        {"record", "sim:wave?hand=left", "sim:wave", "--left-wrist", "sim:orbit?station=1",
+         "--right-wrist", "sim:orbit?station=2", "--out", take, "--duration", "1s", "--json"});
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    const json recorded = last_object(done);
+    REQUIRE(recorded["wrists"].size() == 2);
+    CHECK(recorded["wrists"][1]["hand"] == "right");
+    CHECK(recorded["wrists"][1]["station"] == 2);
+    const int left = recorded["wrists"][0]["poses"];
+    const int both = left + recorded["wrists"][1]["poses"].get<int>();
+    CHECK(left > 20);
+
+    const auto report = nendo::test::nendo({"recording", "info", take, "--json"});
+    const json info = last_object(report);
+    CHECK(info["whole"] == true);
+    CHECK(info["gaps"] == 0);
+    CHECK(info["poses"] == both);
+    REQUIRE(info["trackers"].size() == 2);
+    CHECK(info["trackers"][0]["hand"] == "left");
+    CHECK(info["trackers"][1]["source"].get<std::string>().starts_with("sim:orbit"));
+    CHECK(contains(nendo::test::nendo({"recording", "info", take}).out, "left wrist"));
+    CHECK(nendo::test::nendo({"recording", "check", take}).exit_code == 0);
+
+    const std::string replay = "replay:" + take + "?hand=left&speed=2";
+    CHECK(last_object(nendo::test::nendo({"info", replay, "--tracker", "--json"}))["rate_hz"] ==
+          480.0);
+    const auto seen = nendo::test::nendo({"monitor", replay, "--tracker"});
+    CHECK(seen.exit_code == 0);
+    CHECK(static_cast<int>(lines_of(seen.out).size()) == left);
+    CHECK(last_object(seen)["replayed_s"].is_number());
+    CHECK(nendo::test::nendo({"doctor", replay, "--tracker"}).out.find("0 refused") !=
+          std::string::npos);
+    const auto glove = nendo::test::nendo({"monitor", replay, "--count", "1"});
+    CHECK(last_object(glove)["hand"] == "left");
+  }
+
+  TEST_CASE("record without a tracker has no wrists, and refuses a tracker for no hand") {
+    const TemporaryFolder folder;
+    const std::string take = (folder.path() / "take.nendo").string();
+    const auto none = nendo::test::nendo(
+        {"record", "sim", "--left-wrist", "sim:orbit", "--out", take, "--duration", "1s"});
+    CHECK(none.exit_code == 2);
+    CHECK(is_one_line_about(none.err, "there is no left hand"));
+    const auto done =
+        nendo::test::nendo({"record", "sim", "--out", take, "--duration", "200ms", "--json"});
+    CHECK(last_object(done)["wrists"].empty());
+    const auto replayed = nendo::test::nendo({"info", "replay:" + take, "--tracker"});
+    CHECK(replayed.exit_code != 0);
+    CHECK(is_one_line_about(replayed.err, "no tracker moved a hand"));
+  }
+
   TEST_CASE("a wrong tracker gets one clear line and the right exit code") {
     for (const std::string command : {"info", "monitor", "doctor"}) {
       const auto unknown = nendo::test::nendo({command, "bogus:1", "--tracker"});

@@ -97,8 +97,8 @@ namespace {
 
 Error without_hand(Side side, const std::string& spec) {
   const std::string name(name_of(side));
-  return {Errc::usage, "--" + name + "-wrist " + spec + ": there is no " + name +
-                           " hand; name its glove with --" + name};
+  return {Errc::usage,
+          "--" + name + "-wrist " + spec + ": there is no " + name + " hand; name its glove also"};
 }
 
 /// Returns the tracking by the stored mount, or else the usual one.
