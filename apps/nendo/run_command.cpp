@@ -267,7 +267,8 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
 
 /// The options that the recording of --over decides.
 std::vector<std::string> decided_by_take() {
-  std::vector<std::string> options{"--puppet", "--mask", "--symmetry", "--size"};
+  std::vector<std::string> options{"--puppet", "--mask",       "--symmetry",
+                                   "--size",   "--left-wrist", "--right-wrist"};
   flow::for_each_setting([&](const flow::SettingText& setting) {
     if (!setting.option.empty()) options.emplace_back(setting.option);
   });

@@ -12,6 +12,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
+#include <nendo/base/text.hpp>
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/setting.hpp>
 #include <nendo/sculpting/find_wearer.hpp>
@@ -19,6 +20,7 @@
 #include "cli/figures.hpp"
 #include "cli/print.hpp"
 #include "cli/terminal.hpp"
+#include "gloves/tracker_text.hpp"
 
 namespace nendo::session {
 namespace {
@@ -36,6 +38,7 @@ std::string progress_line(const flow::Frame& frame, double elapsed_s, double dur
     if (!hand.present) continue;
     line += fmt::format("  {}: {}", name_of(side),
                         hand.silent ? "silent" : std::to_string(hand.samples) + " samples");
+    if (hand.tracked && hand.lost) line += ", wrist lost";
     if (uncalibrated[flow::Placement::index_of(side)]) line += ", uncalibrated";
   }
   if (!frame.held) line += "  released";
@@ -59,6 +62,7 @@ std::string brief_progress_line(const flow::Frame& frame, double elapsed_s,
     if (!hand.present) continue;
     line += fmt::format("  {} {}", name_of(side),
                         hand.silent ? "silent" : std::to_string(hand.samples));
+    if (hand.tracked && hand.lost) line += ", lost";
     if (uncalibrated[slot]) without += (without.empty() ? "  " : ", ") + std::string(name_of(side));
   }
   if (!frame.held) line += "  released";
@@ -130,6 +134,20 @@ void print_slips(const hand::SensorAngles& slips_counts, const hand::SensorRange
   if (!any) print_row("", "no sensor has slipped since the calibration");
 }
 
+/// Prints the counts of a wrist that its tracker moved.
+void print_wrist(const gloves::OpenHand& hand, const flow::WristStats& stats) {
+  const driver::TrackerStation& station = hand.wrist->station;
+  const hand::TrackingCounts& counts = stats.counts;
+  print_row(fmt::format("{} wrist", name_of(hand.side)),
+            fmt::format("{} poses, {} refused, {} flips, {} losses, {} releases; {}, station {}",
+                        cli::thousands(counts.poses), counts.refused, counts.flips, counts.losses,
+                        stats.releases, printable(station.tracker->info().source),
+                        station.station));
+  print_row("", driver::in_words(driver::counts_of(station.tracker->stats())));
+  if (counts.flips > 0) print_row("", gloves::hemisphere_advice);
+  if (stats.is_lost) print_row("", "lost at the end: no good pose came");
+}
+
 void print_hand(const gloves::OpenHand& hand, const RunOutcome& outcome) {
   const auto& stats = outcome.stats;
   const std::size_t slot = flow::Placement::index_of(hand.side);
@@ -149,6 +167,15 @@ void print_hand(const gloves::OpenHand& hand, const RunOutcome& outcome) {
   } else if (hand.wearer.adapt) {
     print_ranges(stats.ranges[slot], info.sensors);
   }
+  if (is_moved(hand, stats)) print_wrist(hand, stats.wrists[slot]);
+}
+
+void print_pose_latencies(const flow::LoopStats& stats) {
+  if (stats.pose_to_frame.count() == 0) return;
+  print_percentiles("pose to frame", stats.pose_to_frame);
+  print_row("", "from the last byte of a wrist's pose to the finished mesh");
+  print_percentiles("age of poses", stats.pose_age);
+  print_row("", "from their measurement, as far as the tracker's driver knows it");
 }
 
 void print_holds(const RunOptions& options, const flow::LoopStats& stats) {
@@ -252,6 +279,7 @@ void print_summary_text(const RunOptions& options, const std::vector<gloves::Ope
   print_percentiles("work per tick", stats.work);
   print_percentiles("end to end", stats.end_to_end);
   print_row("", "from the last byte of a sample to the finished mesh");
+  print_pose_latencies(stats);
   print_filter(options.filter, stats);
   print_injective(options, stats);
   print_clay(stats, outcome.units_per_metre);
@@ -268,6 +296,10 @@ void print_summary_text(const RunOptions& options, const std::vector<gloves::Ope
 }
 
 } // namespace
+
+bool is_moved(const gloves::OpenHand& hand, const flow::LoopStats& stats) noexcept {
+  return hand.wrist && stats.wrists[flow::Placement::index_of(hand.side)].tracked;
+}
 
 Progress progress_for(const RunOptions& options, const std::vector<gloves::OpenHand>& hands) {
   if (options.json) {

@@ -82,6 +82,24 @@ ordered_json clay_json(const flow::LoopStats& stats, double units_per_metre) {
           {"volume_cm3", cm3 * clay.volume}};
 }
 
+ordered_json wrist_json(const gloves::OpenHand& hand, const flow::WristStats& stats) {
+  const driver::TrackerStation& station = hand.wrist->station;
+  const driver::StreamStats sent = station.tracker->stats();
+  ordered_json line{{"tracker", station.tracker->info().source},
+                    {"model", station.tracker->info().model},
+                    {"station", station.station},
+                    {"poses", stats.counts.poses},
+                    {"refused_poses", stats.counts.refused},
+                    {"flips", stats.counts.flips},
+                    {"losses", stats.counts.losses},
+                    {"releases", stats.releases},
+                    {"lost", stats.is_lost},
+                    {"ring_refused", sent.ring_refused},
+                    {"reopened", sent.reopened}};
+  gloves::add_counts(line, driver::counts_of(sent));
+  return line;
+}
+
 ordered_json recordings_json(const std::vector<RecordingOutcome>& recordings) {
   auto lines = ordered_json::array();
   for (const auto& [file, recorded] : recordings) {
@@ -151,6 +169,7 @@ void print_progress_json(const flow::Frame& frame, double elapsed_s) {
     const auto& hand = frame.hands[flow::Placement::index_of(side)];
     if (!hand.present) continue;
     line[std::string(name_of(side))] = {{"samples", hand.samples}, {"silent", hand.silent}};
+    if (hand.tracked) line[std::string(name_of(side))]["wrist_lost"] = hand.lost;
   }
   cli::print_line(line);
 }
@@ -198,6 +217,7 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
     if (hand.wearer.ends)
       of_hand["slips_counts"] =
           slips_json(stats.slips_counts[slot], hand.wearer.ends->counts.present);
+    if (is_moved(hand, stats)) of_hand["wrist"] = wrist_json(hand, stats.wrists[slot]);
   }
   line["injective"] = injective_json(options, stats);
   line["clay"] = clay_json(stats, outcome.units_per_metre);
@@ -205,6 +225,10 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
   line[std::string(flow::setting::pinches.name)] =
       flow::name_of_pinches(options.filter.close_pinches);
   line["end_to_end_ms"] = percentiles(stats.end_to_end);
+  if (stats.pose_to_frame.count() > 0) {
+    line["pose_to_frame_ms"] = percentiles(stats.pose_to_frame);
+    line["pose_age_ms"] = percentiles(stats.pose_age);
+  }
   line["wake_latency_ms"] = percentiles(stats.wake_latency);
   line["work_ms"] = percentiles(stats.work);
   line["vertices"] = outcome.vertices;

@@ -21,6 +21,7 @@
 #include "commands/commands.hpp"
 #include "gloves/glove_feedback.hpp"
 #include "gloves/stuck_sensors.hpp"
+#include "gloves/wrist_notices.hpp"
 #include "render/picture.hpp"
 #include "render/scene_frame.hpp"
 #include "session/run_commands.hpp"
@@ -212,6 +213,7 @@ private:
     settle_sinks();
     commands_.follow_frame(frame);
     follow_stuck(frame);
+    follow_wrists(frame);
     const RunStatus status{frame,   model,   fresh,
                            gloves_, facts(), placed_.loop->changes().puppet(frame.puppet)};
     asks_.clear();
@@ -228,6 +230,17 @@ private:
       const std::size_t slot = flow::Placement::index_of(hand.side);
       for (const std::string& sentence : stuck_[slot].changes(frame.hands[slot].left_out))
         report(hand.glove->info().source + ": " + sentence);
+    }
+  }
+  /// Reports wrists that a tracker loses and has again, and receivers in the wrong hemisphere.
+  void follow_wrists(const flow::Frame& frame) {
+    if (frame.ticks_run == 0) return;
+    for (const auto& hand : hands_) {
+      if (!hand.wrist) continue;
+      const std::size_t slot = flow::Placement::index_of(hand.side);
+      for (const std::string& sentence :
+           wrists_[slot].changes(hand.side, frame.hands[slot], frame.scheduled))
+        report(hand.wrist->station.tracker->info().source + ": " + sentence);
     }
   }
   void settle_sinks() {
@@ -361,8 +374,9 @@ private:
   std::vector<Felt> feedback_; ///< the feedback of all gloves
   GloveStatuses gloves_;
   double elapsed_s_ = 0.0;
-  bool end_reported_ = false;                   ///< the end of all gloves was reported
-  std::array<gloves::StuckNotices, 2> stuck_{}; ///< index: flow::Placement::index_of(side)
+  bool end_reported_ = false;                    ///< the end of all gloves was reported
+  std::array<gloves::StuckNotices, 2> stuck_{};  ///< index: flow::Placement::index_of(side)
+  std::array<gloves::WristNotices, 2> wrists_{}; ///< the same
 };
 
 } // namespace

@@ -55,6 +55,8 @@ Result<RunOutcome> run_session(RunOptions options, std::vector<gloves::OpenHand>
                                deform::Mesh model, const RunParticipants& participants,
                                std::vector<flow::Grant> grants = {});
 
+/// Returns whether the hand's tracker moved its wrist.
+bool is_moved(const gloves::OpenHand& hand, const flow::LoopStats& stats) noexcept;
 /// Returns the function that reports the progress of a run with these hands. In a terminal it
 /// rewrites one line of standard error, and elsewhere it prints a line every two seconds. With
 /// `options.json` it prints one object per second on standard output.

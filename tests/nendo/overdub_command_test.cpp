@@ -109,6 +109,8 @@ TEST_SUITE("overdub_command") {
     const std::vector<std::pair<Arguments, std::string>> wrong{
         {{"--over", take, "--mode", "type1"}, "--mode: cannot be combined with --over"},
         {{"--over", take, "--rate", "90"}, "--rate: cannot be combined with --over"},
+        {{"--over", take, "--left-wrist", "sim:orbit"},
+         "--left-wrist: cannot be combined with --over"},
         {{"--over", take, "--pinches", "measured"}, "--pinches: cannot be combined with --over"},
         {{"--over", take, "--puppet", "face"}, "--puppet: cannot be combined with --over"},
         {{NENDO_MODELS "/head.obj", "--over", take}, "is not the model of"},

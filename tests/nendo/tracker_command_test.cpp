@@ -170,6 +170,72 @@ TEST_SUITE("tracker commands") {
     CHECK(is_one_line_about(replayed.err, "no tracker moved a hand"));
   }
 
+  TEST_CASE("the summary of a run has the poses of each wrist, and how late they are shown") {
+    const TemporaryFolder folder;
+    const std::string out = (folder.path() / "shape.obj").string();
+    std::vector<std::string> arguments{"run",
+                                       "--left",
+                                       "sim:wave",
+                                       "--right",
+                                       "sim:wave",
+                                       "--left-wrist",
+                                       "sim:orbit",
+                                       "--right-wrist",
+                                       "sim:orbit?station=2",
+                                       "--duration",
+                                       "2",
+                                       "--out",
+                                       out};
+    const auto text = nendo::test::nendo(arguments);
+    CAPTURE(text.err);
+    REQUIRE(text.exit_code == 0);
+    CHECK(contains(text.out, "  right wrist    "));
+    CHECK(contains(text.out, "sim:orbit, station 2\n"));
+    CHECK(contains(text.out, "  pose to frame  p50 "));
+    CHECK(contains(text.out, "  age of poses   p50 "));
+    CHECK_FALSE(contains(text.out, "hemisphere"));
+    arguments.emplace_back("--json");
+    const auto done = nendo::test::nendo(arguments);
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    const json summary = last_object(done);
+    for (const std::string side : {"left", "right"}) {
+      const json& wrist = summary[side]["wrist"];
+      CHECK(wrist["tracker"].get<std::string>().starts_with("sim:orbit"));
+      CHECK(wrist["station"] == (side == "left" ? 1 : 2));
+      CHECK(wrist["poses"].get<int>() > 50);
+      CHECK(wrist["poses"].get<int>() <= wrist["delivered"].get<int>());
+      for (const auto* none : {"flips", "releases"})
+        CHECK(wrist[none] == 0);
+      CHECK(wrist["lost"] == false);
+      CHECK(json::parse(lines_of(done.out).front())[side]["wrist_lost"].is_boolean());
+    }
+    CHECK(summary["pose_to_frame_ms"]["count"].get<int>() > 50);
+    CHECK(summary["pose_age_ms"]["p50"].get<double>() >=
+          summary["pose_to_frame_ms"]["min"].get<double>());
+  }
+
+  TEST_CASE("a run reports a wrist that its tracker loses, and ends with it in the summary") {
+    const TemporaryFolder folder;
+    const std::string take = (folder.path() / "take.nendo").string();
+    REQUIRE(nendo::test::nendo({"record", "sim:wave?hand=left", "--left-wrist", "sim:orbit",
+                                "--out", take, "--duration", "300ms"})
+                .exit_code == 0);
+    const auto done =
+        nendo::test::nendo({"run", "--left", "sim:wave", "--left-wrist", "replay:" + take,
+                            "--duration", "3", "--out", (folder.path() / "shape.obj").string()});
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    CHECK(contains(done.err, "replay:" + take + ": no good pose of the left wrist comes"));
+    CHECK(contains(done.err, "wrist lost"));
+    CHECK_FALSE(contains(done.out, " 0 losses"));
+    CHECK(contains(done.out, "lost at the end"));
+    CHECK_FALSE(contains(nendo::test::nendo({"run", "--left", "sim:wave", "--duration", "1",
+                                             "--out", (folder.path() / "b.obj").string()})
+                             .out,
+                         "wrist "));
+  }
+
   TEST_CASE("a wrong tracker gets one clear line and the right exit code") {
     for (const std::string command : {"info", "monitor", "doctor"}) {
       const auto unknown = nendo::test::nendo({command, "bogus:1", "--tracker"});
