@@ -27,15 +27,15 @@ using nendo::HostClock;
 using nendo::SampleRing;
 using nendo::Sensor;
 using nendo::Side;
-using nendo::driver::Glove;
 using nendo::driver::DeviceSpec;
+using nendo::driver::Glove;
 using nendo::driver::open_simulated;
 using nendo::test::require_ok;
 
 TEST_SUITE("simulated_driver") {
   namespace {
   DeviceSpec spec(const std::string& motion = "",
-                 const std::map<std::string, std::string>& options = {}) {
+                  const std::map<std::string, std::string>& options = {}) {
     return {"sim:" + motion, "sim", motion, options};
   }
 

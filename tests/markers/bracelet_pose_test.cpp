@@ -55,7 +55,7 @@ double turn_error_deg(const cv::Matx33d& one, const cv::Matx33d& other) {
 }
 
 /// The value below which 95 % are.
-double most_of(std::vector<double> values) {
+double max_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() * 95 / 100];
 }
@@ -103,11 +103,11 @@ TEST_SUITE("bracelet_pose") {
       }
       REQUIRE(turn_deg.size() > views / 2);
       MESSAGE(distance_m << " m: seen in " << turn_deg.size() << " of " << views << " views; 95 % "
-                         << most_of(turn_deg) << " degrees, " << 100 * most_of(place_part)
+                         << max_of(turn_deg) << " degrees, " << 100 * max_of(place_part)
                          << " % of the distance; " << milliseconds / views << " ms per picture");
       CHECK(turn_deg.size() >= views * 95 / 100);
-      CHECK(most_of(turn_deg) <= 1.0);
-      CHECK(most_of(place_part) <= 0.01);
+      CHECK(max_of(turn_deg) <= 1.0);
+      CHECK(max_of(place_part) <= 0.01);
     }
   }
 

@@ -11,23 +11,11 @@ using nendo::test::is_one_line_about;
 
 namespace {
 
-const std::set<std::string> device_keys{"device",
-                                        "kind",
-                                        "stable_name",
-                                        "glove",
-                                        "trackers",
-                                        "description",
-                                        "reason",
-                                        "identified",
-                                        "access",
-                                        "may_open",
-                                        "remedy",
-                                        "usb",
-                                        "holders",
-                                        "left_alone",
-                                        "latency_timer_ms",
-                                        "holders_complete",
-                                        "node_missing"};
+const std::set<std::string> device_keys{
+    "device",           "kind",        "stable_name", "glove",      "trackers",
+    "description",      "reason",      "identified",  "access",     "may_open",
+    "remedy",           "usb",         "holders",     "left_alone", "latency_timer_ms",
+    "holders_complete", "node_missing"};
 
 std::set<std::string> keys_of(const nlohmann::json& object) {
   std::set<std::string> keys;

@@ -31,7 +31,8 @@ TEST_SUITE("tracked_run") {
           {"replay", take, "--no-clock", "--json", "--out", path((mode + ".again.obj").c_str())});
       CAPTURE(replay.err);
       REQUIRE(replay.exit_code == 0);
-      CHECK(test::contents(path("live.obj")) == test::contents(path((mode + ".again.obj").c_str())));
+      CHECK(test::contents(path("live.obj")) ==
+            test::contents(path((mode + ".again.obj").c_str())));
       const auto info = test::nendo({"recording", "info", take, "--json"});
       REQUIRE(info.exit_code == 0);
       CHECK(last_object(info)["loop"]["poses"].get<int>() > 300); // two stations at 120 Hz

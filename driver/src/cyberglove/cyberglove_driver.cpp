@@ -104,8 +104,7 @@ public:
     same_clock_ = true;
   }
 
-  void push(std::span<const std::byte> chunk, HostTime arrival,
-            Sink& sink) noexcept override {
+  void push(std::span<const std::byte> chunk, HostTime arrival, Sink& sink) noexcept override {
     // After eg another glove may be in the unit: its sensors are unknown until the unit was asked.
     const auto check = [&](Record& record) {
       if (!glove_removed_) return identity_.hires ? hires_check_(record, arrival) : check_(record);

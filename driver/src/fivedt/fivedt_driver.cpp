@@ -58,8 +58,7 @@ public:
     if (!wireless_) reset(transport, limit, quiet_time);
   }
 
-  void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
-            Sink& sink) noexcept override {
+  void push(std::span<const std::byte> chunk, HostTime /*arrival*/, Sink& sink) noexcept override {
     const auto take = [&](const Record& record) {
       GloveSample sample;
       for (std::size_t k = 0; k < fingers; ++k)

@@ -46,8 +46,7 @@ public:
     return info;
   }
 
-  void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
-            Sink& sink) noexcept override {
+  void push(std::span<const std::byte> chunk, HostTime /*arrival*/, Sink& sink) noexcept override {
     const auto report = parser_.push(chunk);
     if (!report) return sink.reject();
     GloveSample sample;

@@ -53,8 +53,7 @@ public:
     return {};
   }
 
-  void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
-            Sink& sink) noexcept override {
+  void push(std::span<const std::byte> chunk, HostTime /*arrival*/, Sink& sink) noexcept override {
     const auto take = [&](const Record& record) {
       GloveSample sample;
       for (std::size_t k = 0; k < slots.size(); ++k)

@@ -129,8 +129,7 @@ public:
     if (std::exchange(has_braked_, false) && !legacy_) show_brakes(transport, write_timeout);
   }
 
-  void push(std::span<const std::byte> chunk, HostTime /*arrival*/,
-            Sink& sink) noexcept override {
+  void push(std::span<const std::byte> chunk, HostTime /*arrival*/, Sink& sink) noexcept override {
     const auto take = [&](const Line& line) {
       if (!hands_.option) // an answer may be later than identify() waits
         side_ = hand_in(line).value_or(side_);

@@ -21,7 +21,8 @@ struct Options {
   /// From the transmitter to the zenith of the half space in which receivers are. The default is
   /// the front, as the FASTRAK manual has it (page 50), where a table's hands are.
   std::array<double, 3> hemisphere{1, 0, 0};
-  bool is_filtered = false; ///< by the tracker; off by default, because it delays by up to 158 ms
+  /// Whether the tracker filters; off by default, because that delays poses by up to 158 ms.
+  bool is_filtered = false;
 };
 
 /// Reads `baud`, `hemisphere` and `filter`, and allows `station`. `bauds` are the known rates.

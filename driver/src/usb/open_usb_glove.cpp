@@ -79,7 +79,8 @@ Result<std::unique_ptr<Glove>> open_usb_glove_by(const DeviceSpec& spec, HostTim
   return driver->open(spec, wanted, deadline);
 }
 
-Result<std::unique_ptr<Glove>> open_usb_glove(const DeviceSpec& spec, std::optional<Side> /*side*/) {
+Result<std::unique_ptr<Glove>> open_usb_glove(const DeviceSpec& spec,
+                                              std::optional<Side> /*side*/) {
   return open_usb_glove_by(spec, HostClock::now() + open_budget);
 }
 
@@ -96,7 +97,7 @@ OpenPort usb_opener(UsbWanted wanted, const UsbInterface& interface) {
 
 std::vector<DeviceFact> facts_of(const UsbIdentity& identity) {
   std::vector<DeviceFact> facts{{"usb_id", to_string(id_of(identity))},
-                               {"usb_port", identity.place}};
+                                {"usb_port", identity.place}};
   if (!identity.manufacturer.empty()) facts.push_back({"manufacturer", identity.manufacturer});
   if (!identity.product.empty()) facts.push_back({"product", identity.product});
   if (!identity.serial.empty()) facts.push_back({"serial", identity.serial});

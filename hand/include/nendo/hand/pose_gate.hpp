@@ -52,7 +52,7 @@ public:
   std::optional<PoseSample> pass(const PoseSample& sample) noexcept;
 
   /// Returns whether the gate restarted from the last sample that passed, so that it may be far
-  /// from the one before. The first sample counts.
+  /// from the previous one. The first sample counts.
   bool has_restarted() const noexcept { return has_restarted_; }
   std::uint64_t refused() const noexcept { return refused_; }
   /// Returns the number of samples that were mirrored back. The receiver crossed the transmitter's
