@@ -42,11 +42,10 @@ struct Identity {
   std::int32_t distortion = 0; ///< the first record's
 };
 
-/// Returns the text that begins at a `0`, as the answer to ^V in text form does, or nothing.
+/// Returns the answer to ^V in text form, which begins with a `0` [V], or nothing.
 std::optional<std::string> who_in(std::string_view heard) {
-  const std::size_t begin = heard.find('0');
-  if (begin == std::string_view::npos || heard.size() - begin < min_who_bytes) return std::nullopt;
-  heard.remove_prefix(begin);
+  if (!heard.starts_with('0') || heard.size() < min_who_bytes || heard.size() > max_who_bytes)
+    return std::nullopt;
   const auto is_text = [](char c) { return (c >= ' ' && c <= '~') || c == '\r' || c == '\n'; };
   const auto others = std::count_if(heard.begin(), heard.end(), std::not_fn(is_text));
   if (others > 4) return std::nullopt; // the header repeats the command
@@ -56,7 +55,8 @@ std::optional<std::string> who_in(std::string_view heard) {
   return who;
 }
 
-std::vector<std::uint16_t> stations_in(std::string_view heard) {
+/// Returns the stations of the answer to stations_query, if there is one.
+std::optional<std::vector<std::uint16_t>> stations_in(std::string_view heard) {
   std::vector<std::uint16_t> stations;
   for (std::size_t at = 0; at + header_bytes + 4 <= heard.size(); ++at) {
     const auto answer = heard.substr(at, header_bytes + 4);
@@ -71,7 +71,7 @@ std::vector<std::uint16_t> stations_in(std::string_view heard) {
       if ((usable >> (station - 1U) & 1U) != 0) stations.push_back(station);
     return stations;
   }
-  return stations;
+  return std::nullopt;
 }
 
 class Conversation {
@@ -108,7 +108,9 @@ private:
         dialogue_.forget();
         dialogue_.send("\r"); // it may wait for the rest of a command
         dialogue_.send(poll_command);
-        dialogue_.fall_quiet(quiet_time, max_drain);
+        const bool is_quiet = dialogue_.fall_quiet(quiet_time, max_drain);
+        if (dialogue_.is_over()) return;
+        if (!is_quiet) continue; // a tracker would be
         dialogue_.send(text_command);
         dialogue_.hear(pace);
         dialogue_.forget();
@@ -124,8 +126,7 @@ private:
     }
   }
   void hear_to_end() {
-    constexpr std::size_t longer_than_any = 1024; // something babbles
-    while (dialogue_.heard().size() < longer_than_any &&
+    while (dialogue_.heard().size() <= max_who_bytes &&
            dialogue_.hear(end_of_answer, [](const std::string&) { return true; })) {
     }
   }
@@ -134,9 +135,15 @@ private:
     command(binary_command);
     dialogue_.forget();
     dialogue_.send(stations_query);
-    const auto is_answered = [](const std::string& heard) { return !stations_in(heard).empty(); };
-    dialogue_.hear(answer_time, is_answered);
-    identity_.stations = stations_in(dialogue_.heard());
+    std::optional<std::vector<std::uint16_t>> stations;
+    const auto is_answered = [&](const std::string& heard) {
+      stations = stations_in(heard);
+      return stations.has_value();
+    };
+    if (!dialogue_.hear(answer_time, is_answered))
+      return Error{Errc::no_device, source_ + ": the tracker does not answer which stations it has "
+                                              "(^U); switch it off and on"};
+    identity_.stations = *std::move(stations);
     for (const std::uint16_t station : options_.stations) {
       const auto& there = identity_.stations;
       if (std::find(there.begin(), there.end(), station) != there.end()) continue;

@@ -27,6 +27,7 @@ inline constexpr std::string_view centimetres_command = "U1\r"; ///< inches othe
 inline constexpr std::string_view zero_clock_command = "Q0\r";  ///< [V]
 inline constexpr std::string_view who_query = "\x16\r"; ///< ^V: 196 to 247 bytes of text [V]
 inline constexpr std::size_t min_who_bytes = 150;       ///< [?]
+inline constexpr std::size_t max_who_bytes = 512;       ///< [?]
 /// ^U: two 16-bit maps, of the stations that are detected and those that are active [R].
 inline constexpr std::string_view stations_query = "\x15\x30\r";
 inline constexpr std::uint8_t stations_answer = 0x15;

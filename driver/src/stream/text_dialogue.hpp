@@ -23,8 +23,9 @@ public:
     is_gone_ = transport_.write_all(bytes, write_timeout) == IoStatus::gone;
   }
 
-  /// Discards what comes until nothing has come for `quiet`, or `max_time` is over.
-  void fall_quiet(std::chrono::milliseconds quiet, std::chrono::milliseconds max_time) noexcept {
+  /// Discards what comes until nothing has come for `quiet`, and returns true; false if `max_time`
+  /// is over before.
+  bool fall_quiet(std::chrono::milliseconds quiet, std::chrono::milliseconds max_time) noexcept {
     const HostTime until = HostClock::now() + max_time;
     const auto take = [this](std::span<const std::byte> chunk) {
       bytes_received_ += chunk.size();
@@ -33,6 +34,7 @@ public:
     IoStatus status = IoStatus::done;
     while (!is_gone_ && status == IoStatus::done && HostClock::now() < until)
       note(status = listen(transport_, limit_, quiet, take));
+    return status == IoStatus::timeout;
   }
 
   /// Appends what comes to heard(), until `done(heard())`, which it returns, or `max_time` is over.
