@@ -225,7 +225,7 @@ TEST_SUITE("fastrak_driver") {
     const auto inches = plug({"--odd", "inches"});
     check_no_tracker("fastrak:" + inches->path(), "centimetres");
     const auto deaf = plug({"--odd", "deaf"});
-    check_no_tracker("fastrak:" + deaf->path(), "not l");
+    check_no_tracker("fastrak:" + deaf->path(), "later not l");
     const auto refusing = plug({"--odd", "refuse"});
     const auto station = required(open_trackers(specs_of(refusing->path(), {1}))).front();
     CHECK(fact(station.tracker->info(), "refused_commands") ==

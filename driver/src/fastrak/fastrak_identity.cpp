@@ -15,7 +15,7 @@ constexpr auto max_drain = 250ms;
 // less than open_budget; twice at one rate are 2.1 s.
 constexpr auto answer_time = 250ms;
 constexpr auto single_answer_time = 1000ms;
-constexpr auto stations_time = 300ms;
+constexpr auto setup_time = 400ms;
 constexpr auto pace = 10ms; ///< after each command: no source says how many fit into its buffer
 
 /// Who answered, and at which rate.
@@ -80,9 +80,8 @@ public:
     for (const std::uint16_t station : options_.stations)
       if (station > fastrak_stations) command(station_command('l', station, ",1\r"));
     dialogue_.forget();
-    dialogue_.send(stations_query);
     const auto is_answered = [](const std::string& heard) { return bool(find_stations(heard)); };
-    dialogue_.hear(stations_time, is_answered);
+    dialogue_.ask(stations_query, setup_time, is_answered);
     const auto digits = find_stations(dialogue_.heard());
     if (!digits) return unanswered("l");
     return choose_stations(std::string(*digits));
@@ -101,9 +100,8 @@ public:
     command(no_stylus_command);
     for (const std::string_view filter : options_.is_filtered ? filters_on : filters_off)
       command(filter);
-    dialogue_.send(status_command);
     const auto is_answered = [](const std::string& heard) { return bool(find_status(heard)); };
-    dialogue_.hear(single_answer_time, is_answered);
+    dialogue_.ask(status_command, setup_time, is_answered);
     const auto status = find_status(dialogue_.heard());
     if (!status) return unanswered("S");
     if (!status->is_metric())
@@ -147,8 +145,8 @@ private:
   }
   Error unanswered(std::string_view query) const {
     if (dialogue_.is_gone()) return went_away(source_);
-    return {Errc::no_device, source_ + ": the tracker answered S, but not " + std::string(query) +
-                                 "; switch it off and on"};
+    return {Errc::no_device, source_ + ": the tracker answered S, but later not " +
+                                 std::string(query) + "; switch it off and on"};
   }
 
   TextDialogue& dialogue_;

@@ -134,13 +134,12 @@ private:
   Result<void> know_stations() {
     command(binary_command);
     dialogue_.forget();
-    dialogue_.send(stations_query);
     std::optional<std::vector<std::uint16_t>> stations;
     const auto is_answered = [&](const std::string& heard) {
       stations = stations_in(heard);
       return stations.has_value();
     };
-    if (!dialogue_.hear(answer_time, is_answered))
+    if (!dialogue_.ask(stations_query, answer_time, is_answered))
       return Error{Errc::no_device, source_ + ": the tracker does not answer which stations it has "
                                               "(^U); switch it off and on"};
     identity_.stations = *std::move(stations);
@@ -163,7 +162,6 @@ private:
       command(filter);
     command(records);
     dialogue_.forget();
-    dialogue_.send(poll_command);
     std::optional<Record> first;
     const auto is_answered = [&](const std::string& heard) {
       Parser parser;
@@ -171,7 +169,7 @@ private:
       parser.push(std::as_bytes(std::span(heard)), [&](const Record& record) { first = record; });
       return parser.counters().records >= identity_.stations.size();
     };
-    if (!dialogue_.hear(answer_time, is_answered))
+    if (!dialogue_.ask(poll_command, answer_time, is_answered))
       return Error{Errc::no_device, source_ +
                                         ": the tracker answers, but does not send the records "
                                         "that it is asked for; switch it off and on"};

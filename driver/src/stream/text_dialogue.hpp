@@ -53,6 +53,18 @@ public:
     hear(time, [](const std::string&) { return false; });
   }
 
+  /// Sends `query` and hears until `done(heard())`, up to three times, since noise may damage an
+  /// answer, and a host or a device may be held up.
+  template <class Done>
+  bool ask(std::string_view query, std::chrono::milliseconds answer_time, Done&& done) {
+    constexpr int tries = 3;
+    for (int k = 0; k < tries && !is_over(); ++k) {
+      send(query);
+      if (hear(answer_time, done)) return true;
+    }
+    return false;
+  }
+
   /// What hear() has received since forget(); of very much, the end.
   const std::string& heard() const noexcept { return heard_; }
   void forget() noexcept { heard_.clear(); }
