@@ -164,7 +164,7 @@ TEST_SUITE("fastrak_driver") {
     CHECK(turned.wrong == turned.count);
   }
 
-  TEST_CASE("a FASTRAK is found at each rate of its line; one that is too slow is refused") {
+  TEST_CASE("a FASTRAK is found at each rate of its line, and one that is too slow is refused") {
     for (const auto& [baud, bytes] :
          {std::pair("115200", ""), std::pair("57600", ""), std::pair("38400", "3840"),
           std::pair("19200", "1920"), std::pair("9600", "960")}) {
