@@ -78,11 +78,13 @@ ordered_json json_of(const GloveCandidate& candidate) {
 }
 
 void print_text(const GloveCandidate& candidate) {
+  const auto trackers = tracker_specs_of(candidate);
   std::cout << candidate.device << ": " << candidate.description << "\n  why        "
-            << candidate.reason << "\n  use it as  "
-            << (candidate.spec.empty() ? "nothing yet" : candidate.spec);
-  if (const auto trackers = tracker_specs_of(candidate); !trackers.empty()) {
-    std::cout << "\n  or as      ";
+            << candidate.reason;
+  if (!candidate.spec.empty() || trackers.empty())
+    std::cout << "\n  use it as  " << (candidate.spec.empty() ? "nothing yet" : candidate.spec);
+  if (!trackers.empty()) {
+    std::cout << (candidate.spec.empty() ? "\n  use it as  " : "\n  or as      ");
     for (const std::string& spec : trackers)
       std::cout << (&spec == &trackers.front() ? "" : ", ") << spec;
     std::cout << ", if it is a tracker: `nendo doctor " << shell_word(trackers.front())

@@ -1,5 +1,5 @@
-// nendo udev: installs the rules that make gloves usable without root, and binds gloves to
-// adapters.
+// nendo udev: installs the rules that make gloves usable without root, and binds gloves and
+// trackers to adapters.
 
 #include <filesystem>
 #include <iostream>
@@ -23,14 +23,16 @@ namespace {
 struct Options {
   std::string root = "/";
   bool dry_run = false;
-  std::string file; ///< show
-  std::string port; ///< bind
-  std::string hand; ///< bind, unbind
+  std::string file;   ///< show
+  std::string port;   ///< bind
+  std::string device; ///< bind, unbind: name_of(udev::BoundDevice)
   bool by_place = false;
 };
 
-Side side_of(const Options& options) {
-  return options.hand == name_of(Side::left) ? Side::left : Side::right;
+udev::BoundDevice device_of(const Options& options) {
+  for (const udev::BoundDevice device : udev::bound_devices)
+    if (options.device == name_of(device)) return device;
+  return {}; // the command line admits no other name
 }
 
 /// Makes the changes and reports each. Returns the exit code.
@@ -109,9 +111,9 @@ int show(const Options& options) {
   }
   const auto bindings = udev::read_bindings(options.root);
   if (!bindings) return cli::report(bindings.error());
-  for (const Side side : {Side::left, Side::right}) {
-    std::cout << name_of(side) << ": " << udev::binding_in(*bindings, side).value_or("not bound")
-              << '\n';
+  for (const udev::BoundDevice device : udev::bound_devices) {
+    std::cout << name_of(device) << ": "
+              << udev::binding_in(*bindings, device).value_or("not bound") << '\n';
   }
   return 0;
 }
@@ -134,7 +136,7 @@ int bind(const Options& options) {
       ports.push_back({std::move(candidate.device), std::move(candidate.usb)});
   }
   const auto binding = udev::make_binding(driver::resolve_port(options.port), ports,
-                                          side_of(options), options.by_place);
+                                          device_of(options), options.by_place);
   if (!binding) return cli::report(binding.error());
   const auto rule = udev::rule_of(*binding);
   if (!rule) return cli::report(rule.error());
@@ -144,7 +146,7 @@ int bind(const Options& options) {
   if (!options.by_place && binding->adapter.serial == "0001") // the CP2102's default
     cli::note("many adapters have the serial number 0001; --by-place distinguishes them");
   const int code =
-      change_bindings(*bindings, udev::with_binding(*bindings, side_of(options), *rule), options);
+      change_bindings(*bindings, udev::with_binding(*bindings, device_of(options), *rule), options);
   for (const udev::RuleFile& file : udev::rules_in_force(options.root)) {
     if (code == 0 && file.state == udev::RuleState::missing)
       cli::note(file.name +
@@ -156,7 +158,7 @@ int bind(const Options& options) {
 int unbind(const Options& options) {
   const auto bindings = udev::read_bindings(options.root);
   if (!bindings) return cli::report(bindings.error());
-  return change_bindings(*bindings, udev::without_binding(*bindings, side_of(options)), options);
+  return change_bindings(*bindings, udev::without_binding(*bindings, device_of(options)), options);
 }
 
 using Action = int (*)(const Options& options);
@@ -177,8 +179,8 @@ cli::Command add(cli::Command& udev, const std::shared_ptr<Options>& options,
 void nendo::app::add_udev(cli::Command& program) {
   using namespace udev_command;
   auto options = std::make_shared<Options>();
-  cli::Command udev =
-      program.add_command("udev", "Makes gloves usable without root, and gives them stable names");
+  cli::Command udev = program.add_command(
+      "udev", "Makes gloves and trackers usable without root, and gives them stable names");
   udev.require_command();
   udev.set_footer("Rules go to /etc/udev/rules.d, for which changes need sudo.");
   add(udev, options, "install", "Installs the rules that identify gloves and grant access to them",
@@ -187,13 +189,19 @@ void nendo::app::add_udev(cli::Command& program) {
   cli::Command shown = add(udev, options, "show", "Shows the rules and bindings in effect", show);
   shown.add_option("FILE", options->file, "Print this file of rules, as install writes it");
   cli::Command bound =
-      add(udev, options, "bind", "Binds an adapter, known by its serial number, to a glove", bind);
-  bound.add_option("PORT", options->port, "The glove's port, e.g. /dev/ttyUSB0").required();
-  bound.add_option("--as", options->hand, "The hand that wears the glove")
+      add(udev, options, "bind",
+          "Binds an adapter, known by its serial number, to a glove or a tracker", bind);
+  bound.add_option("PORT", options->port, "The device's port, e.g. /dev/ttyUSB0").required();
+  bound
+      .add_option(
+          "--as", options->device,
+          "The hand that wears the glove, or tracker, whose port is then /dev/nendo/tracker")
       .required()
-      .one_of({"left", "right"});
+      .one_of({"left", "right", "tracker"});
   bound.add_flag("--by-place", options->by_place,
                  "Identify it by its USB socket, for adapters without a serial number");
-  cli::Command unbound = add(udev, options, "unbind", "Removes a hand's binding", unbind);
-  unbound.add_option("HAND", options->hand, "left or right").required().one_of({"left", "right"});
+  cli::Command unbound = add(udev, options, "unbind", "Removes a device's binding", unbind);
+  unbound.add_option("DEVICE", options->device, "left, right or tracker")
+      .required()
+      .one_of({"left", "right", "tracker"});
 }

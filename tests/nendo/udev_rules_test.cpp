@@ -71,6 +71,19 @@ TEST_SUITE("udev") {
     CHECK(verdict->mentions(glove.serial_path(), "latency_timer' writing '1'"));
   }
 
+  TEST_CASE("an adapter that is bound to a tracker gets the same, and is no glove") {
+    const auto tracker = adapter("1-2", "ttyUSB0", "A6008isP");
+    const Rules rules;
+    rules.bind({tracker}, "ttyUSB0", "tracker");
+    ASK(verdict, rules.path(), {tracker}, all_paths(tracker));
+    CHECK_FALSE(verdict->complains());
+    CHECK(verdict->links == "/dev/nendo/tracker\n");
+    CHECK(verdict->property(tracker.tty_path(), "TAGS").find(":uaccess:") != std::string::npos);
+    CHECK(verdict->property(tracker.tty_path(), "ID_MM_PORT_IGNORE") == "1");
+    CHECK(verdict->property(tracker.tty_path(), "ID_NENDO_GLOVE").empty());
+    CHECK(verdict->mentions(tracker.serial_path(), "latency_timer' writing '1'"));
+  }
+
   TEST_CASE("neighbours are left alone: a GPS and a modem on the same chip, an Arduino") {
     const auto glove = adapter("1-2", "ttyUSB0", "A6008isP");
     const auto gps = adapter("1-3", "ttyUSB1", "A6008isQ");

@@ -27,9 +27,9 @@ SerialPort port_of(const std::string& device, const std::string& place, const st
   return port;
 }
 
-std::string rule_for(const std::vector<SerialPort>& ports, const std::string& port, Side side,
-                     bool by_place = false) {
-  const auto binding = make_binding(port, ports, side, by_place);
+std::string rule_for(const std::vector<SerialPort>& ports, const std::string& port,
+                     BoundDevice device, bool by_place = false) {
+  const auto binding = make_binding(port, ports, device, by_place);
   REQUIRE_MESSAGE(binding, (binding ? "" : binding.error().message));
   const auto rule = rule_of(*binding);
   REQUIRE(rule);
@@ -87,7 +87,7 @@ TEST_SUITE("udev rules") {
   TEST_CASE("a port is bound by its adapter's serial number") {
     const std::vector ports{port_of("/dev/ttyUSB0", "1-2", "A1"),
                             port_of("/dev/ttyUSB1", "1-3", "A2")};
-    const std::string rule = rule_for(ports, "/dev/ttyUSB1", Side::right);
+    const std::string rule = rule_for(ports, "/dev/ttyUSB1", BoundDevice::right_glove);
     CHECK(rule.find(R"(ATTRS{serial}=="A2")") != std::string::npos);
     CHECK(rule.find(R"(ENV{ID_NENDO_HAND}="right")") != std::string::npos);
     CHECK(rule.find('\n') == std::string::npos);
@@ -101,7 +101,7 @@ TEST_SUITE("udev rules") {
                             port_of("/dev/ttyUSB1", "1-3", "0001"),
                             port_of("/dev/ttyUSB2", "1-4", ""), no_usb};
     const auto code = [&](const std::string& port, bool by_place) {
-      const auto binding = make_binding(port, ports, Side::left, by_place);
+      const auto binding = make_binding(port, ports, BoundDevice::left_glove, by_place);
       return binding ? 0 : static_cast<int>(binding.error().code);
     };
     CHECK(code("/dev/ttyUSB0", false) == static_cast<int>(Errc::usage));
@@ -115,11 +115,11 @@ TEST_SUITE("udev rules") {
   TEST_CASE("of an adapter with several ports only the one is bound") {
     const std::vector ports{port_of("/dev/ttyUSB0", "1-2", "A1", 0),
                             port_of("/dev/ttyUSB1", "1-2", "A1", 1)};
-    CHECK(rule_for(ports, "/dev/ttyUSB1", Side::left).find(R"(INTERFACE}=="01")") !=
+    CHECK(rule_for(ports, "/dev/ttyUSB1", BoundDevice::left_glove).find(R"(INTERFACE}=="01")") !=
           std::string::npos);
     const std::vector same{port_of("/dev/ttyUSB0", "1-2", "A1", 0),
                            port_of("/dev/ttyUSB1", "1-2", "A1", 0)};
-    CHECK_FALSE(make_binding("/dev/ttyUSB1", same, Side::left, false));
+    CHECK_FALSE(make_binding("/dev/ttyUSB1", same, BoundDevice::left_glove, false));
   }
 
   TEST_CASE("a serial number that means something to udev makes no rule") {
@@ -134,33 +134,51 @@ TEST_SUITE("udev rules") {
   TEST_CASE("a hand has one adapter and an adapter one hand, whatever the order") {
     const std::vector ports{port_of("/dev/ttyUSB0", "1-2", "A1"),
                             port_of("/dev/ttyUSB1", "1-3", "A2")};
-    const std::string first_right = rule_for(ports, "/dev/ttyUSB0", Side::right);
-    const std::string second_right = rule_for(ports, "/dev/ttyUSB1", Side::right);
-    const std::string first_left = rule_for(ports, "/dev/ttyUSB0", Side::left);
-    const std::string one = with_binding("", Side::right, first_right);
-    CHECK(binding_in(one, Side::right) == first_right);
-    CHECK_FALSE(binding_in(one, Side::left));
-    CHECK(with_binding(one, Side::right, first_right) == one); // idempotent
-    const std::string other = with_binding(one, Side::right, second_right);
-    CHECK(binding_in(other, Side::right) == second_right);
+    const std::string first_right = rule_for(ports, "/dev/ttyUSB0", BoundDevice::right_glove);
+    const std::string second_right = rule_for(ports, "/dev/ttyUSB1", BoundDevice::right_glove);
+    const std::string first_left = rule_for(ports, "/dev/ttyUSB0", BoundDevice::left_glove);
+    const std::string one = with_binding("", BoundDevice::right_glove, first_right);
+    CHECK(binding_in(one, BoundDevice::right_glove) == first_right);
+    CHECK_FALSE(binding_in(one, BoundDevice::left_glove));
+    CHECK(with_binding(one, BoundDevice::right_glove, first_right) == one); // idempotent
+    const std::string other = with_binding(one, BoundDevice::right_glove, second_right);
+    CHECK(binding_in(other, BoundDevice::right_glove) == second_right);
     CHECK(other.find("A1") == std::string::npos);
-    const std::string turned = with_binding(one, Side::left, first_left);
-    CHECK_FALSE(binding_in(turned, Side::right));
-    CHECK(binding_in(turned, Side::left) == first_left);
-    const std::string both = with_binding(turned, Side::right, second_right);
-    CHECK(binding_in(both, Side::left) == first_left);
-    CHECK(binding_in(both, Side::right) == second_right);
-    CHECK(without_binding(without_binding(both, Side::left), Side::right).empty());
+    const std::string turned = with_binding(one, BoundDevice::left_glove, first_left);
+    CHECK_FALSE(binding_in(turned, BoundDevice::right_glove));
+    CHECK(binding_in(turned, BoundDevice::left_glove) == first_left);
+    const std::string both = with_binding(turned, BoundDevice::right_glove, second_right);
+    CHECK(binding_in(both, BoundDevice::left_glove) == first_left);
+    CHECK(binding_in(both, BoundDevice::right_glove) == second_right);
+    CHECK(without_binding(without_binding(both, BoundDevice::left_glove), BoundDevice::right_glove)
+              .empty());
+  }
+
+  TEST_CASE("a tracker is bound beside the gloves, and an adapter is a glove's or a tracker's") {
+    const std::vector ports{port_of("/dev/ttyUSB0", "1-2", "A1"),
+                            port_of("/dev/ttyUSB1", "1-3", "A2")};
+    const std::string glove = rule_for(ports, "/dev/ttyUSB0", BoundDevice::left_glove);
+    const std::string tracker = rule_for(ports, "/dev/ttyUSB1", BoundDevice::tracker);
+    CHECK(tracker.find(R"(ENV{ID_NENDO_TRACKER}="1")") != std::string::npos);
+    CHECK(tracker.find("GLOVE") == std::string::npos);
+    const std::string both = with_binding(with_binding("", BoundDevice::left_glove, glove),
+                                          BoundDevice::tracker, tracker);
+    CHECK(binding_in(both, BoundDevice::left_glove) == glove);
+    CHECK(binding_in(both, BoundDevice::tracker) == tracker);
+    const std::string moved = with_binding(both, BoundDevice::tracker,
+                                           rule_for(ports, "/dev/ttyUSB0", BoundDevice::tracker));
+    CHECK_FALSE(binding_in(moved, BoundDevice::left_glove));
+    CHECK(without_binding(moved, BoundDevice::tracker).empty());
   }
 
   TEST_CASE("lines of the user's own survive binding and unbinding") {
     const std::string own = "# mine\nKERNEL==\"ttyS0\", SYMLINK+=\"gps\"\n\n# ends without newline";
     const std::string rule =
-        rule_for({port_of("/dev/ttyUSB0", "1-2", "A1")}, "/dev/ttyUSB0", Side::left);
-    const std::string bound = with_binding(own, Side::left, rule);
+        rule_for({port_of("/dev/ttyUSB0", "1-2", "A1")}, "/dev/ttyUSB0", BoundDevice::left_glove);
+    const std::string bound = with_binding(own, BoundDevice::left_glove, rule);
     CHECK(bound.find(own + '\n') != std::string::npos);
-    CHECK(without_binding(bound, Side::left).find(own + '\n') != std::string::npos);
-    CHECK(without_binding(own, Side::left) == own);
+    CHECK(without_binding(bound, BoundDevice::left_glove).find(own + '\n') != std::string::npos);
+    CHECK(without_binding(own, BoundDevice::left_glove) == own);
   }
 }
 

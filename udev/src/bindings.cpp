@@ -12,7 +12,8 @@ constexpr std::string_view head =
     "# Gloves that `nendo udev bind` bound, one a line; lines of your own stay as they are.\n"
     "SUBSYSTEM==\"tty|usb-serial\", ATTRS{bInterfaceNumber}==\"?*\", "
     "ENV{.NENDO_INTERFACE}=\"$attr{bInterfaceNumber}\"\n";
-constexpr std::string_view what_follows = ", ENV{ID_NENDO_GLOVE}=\"1\"";
+/// What follows the adapter in a binding's rule begins with this.
+constexpr std::string_view mark = ", ENV{ID_NENDO_";
 
 /// Returns false for text that could mean something to udev: quotes end it, *?[]| are patterns and
 /// $% are substitutions.
@@ -24,18 +25,20 @@ bool is_plain(std::string_view text) {
   });
 }
 
-std::string hand_of(Side side) {
-  return "ENV{ID_NENDO_HAND}=\"" + std::string(name_of(side)) + "\"";
+/// Returns what a binding's rule says of the device.
+std::string device_part(BoundDevice device) {
+  const std::string begin(mark);
+  if (device == BoundDevice::tracker) return begin + "TRACKER}=\"1\"";
+  return begin + "GLOVE}=\"1\", ENV{ID_NENDO_HAND}=\"" + std::string(name_of(device)) + "\"";
 }
 
-/// Returns what a binding's rule says of the adapter, without the hand.
+/// Returns what a binding's rule says of the adapter, without the device.
 std::string_view adapter_part(std::string_view rule) {
-  return rule.substr(0, rule.find(what_follows));
+  return rule.substr(0, rule.find(mark));
 }
 
-bool binds(std::string_view line, Side side) {
-  return !line.starts_with('#') && line.find(what_follows) != std::string_view::npos &&
-         line.find(hand_of(side)) != std::string_view::npos;
+bool binds(std::string_view line, BoundDevice device) {
+  return !line.starts_with('#') && line.find(device_part(device)) != std::string_view::npos;
 }
 
 template <class Action>
@@ -63,8 +66,8 @@ Error indistinct(std::string_view port, const std::string& why) {
 
 } // namespace
 
-Result<Binding> make_binding(std::string_view device, std::span<const SerialPort> ports, Side side,
-                             bool by_place) {
+Result<Binding> make_binding(std::string_view device, std::span<const SerialPort> ports,
+                             BoundDevice bound_to, bool by_place) {
   const auto found = std::find_if(ports.begin(), ports.end(),
                                   [&](const SerialPort& port) { return port.device == device; });
   if (found == ports.end()) {
@@ -73,15 +76,13 @@ Result<Binding> make_binding(std::string_view device, std::span<const SerialPort
                      ": no such serial port; `nendo devices` lists those there are"};
   }
   if (!found->usb) {
-    return Error{Errc::usage, std::string(device) +
-                                  ": is no USB adapter's, so it keeps its name; "
-                                  "use it as serial:" +
-                                  std::string(device)};
+    return Error{Errc::usage, std::string(device) + ": is no USB adapter's, so it keeps its name, "
+                                                    "and needs no other"};
   }
   const UsbIdentity& usb = *found->usb;
   if (!by_place && usb.serial.empty())
     return indistinct(device, "its adapter has no serial number");
-  Binding binding{side, usb, by_place, false};
+  Binding binding{bound_to, usb, by_place, false};
   for (const SerialPort& other : ports) {
     if (!other.usb || other.device == device) continue;
     const bool same_adapter = other.usb->place == usb.place;
@@ -117,29 +118,30 @@ Result<std::string> rule_of(const Binding& binding) {
                   static_cast<unsigned>(usb.interface_number) & 0xFFU);
     rule += interface.data();
   }
-  return rule + std::string(what_follows) + ", " + hand_of(binding.side);
+  return rule + device_part(binding.bound_to);
 }
 
-std::string with_binding(std::string_view text, Side side, std::string_view rule) {
+std::string with_binding(std::string_view text, BoundDevice device, std::string_view rule) {
   std::string changed = without_lines(text, [&](std::string_view line) {
-    const bool same_adapter = line.find(what_follows) != std::string_view::npos &&
-                              adapter_part(line) == adapter_part(rule);
-    return same_adapter || binds(line, side);
+    const bool same_adapter =
+        line.find(mark) != std::string_view::npos && adapter_part(line) == adapter_part(rule);
+    return same_adapter || binds(line, device);
   });
   if (changed.find(".NENDO_INTERFACE}=\"$attr") == std::string::npos) changed.insert(0, head);
   return changed.append(rule) + '\n';
 }
 
-std::string without_binding(std::string_view text, Side side) {
-  if (!binding_in(text, side)) return std::string(text);
-  std::string kept = without_lines(text, [&](std::string_view line) { return binds(line, side); });
+std::string without_binding(std::string_view text, BoundDevice device) {
+  if (!binding_in(text, device)) return std::string(text);
+  std::string kept =
+      without_lines(text, [&](std::string_view line) { return binds(line, device); });
   return kept == head ? std::string{} : kept;
 }
 
-std::optional<std::string> binding_in(std::string_view text, Side side) {
+std::optional<std::string> binding_in(std::string_view text, BoundDevice device) {
   std::optional<std::string> found;
   for_each_line(text, [&](std::string_view line) {
-    if (!found && binds(line, side)) found = std::string(line);
+    if (!found && binds(line, device)) found = std::string(line);
   });
   return found;
 }

@@ -68,13 +68,14 @@ std::string identification() {
           adapters_left_out() +
           ".\n"
           "# `nendo udev bind PORT --as right` binds one of those by its serial number.\n"
-          "ENV{ID_NENDO_GLOVE}!=\"1\", GOTO=\"nendo_end\"\n\n"
+          "ENV{ID_NENDO_GLOVE}!=\"1\", ENV{ID_NENDO_TRACKER}!=\"1\", GOTO=\"nendo_end\"\n\n"
           "# ModemManager would hold a new port for 10 to 20 s and send modem commands to it.\n"
           "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", ENV{ID_MM_DEVICE_IGNORE}=\"1\"\n"
           "SUBSYSTEM==\"tty\", ENV{ID_MM_PORT_IGNORE}=\"1\"\n\n"
           "# Links that stay the same. A device's own text must not lead out of the folder.\n"
           "SUBSYSTEM==\"tty\", ENV{ID_NENDO_HAND}==\"left|right\", "
           "SYMLINK+=\"nendo/$env{ID_NENDO_HAND}\"\n"
+          "SUBSYSTEM==\"tty\", ENV{ID_NENDO_TRACKER}==\"1\", SYMLINK+=\"nendo/tracker\"\n"
           "SUBSYSTEM==\"tty\", ENV{ID_NENDO_HAND}==\"\", ENV{.NENDO_SERIAL}==\"?*\", "
           "ENV{.NENDO_SERIAL}!=\"*/*\", SYMLINK+=\"nendo/glove-$env{.NENDO_SERIAL}\"\n\n"
           "# FTDI adapters delay short replies by 16 ms by default.\n"
@@ -91,10 +92,11 @@ std::string grant() {
   const std::string rights =
       "TAG+=\"uaccess\", GROUP=\"" + std::string(glove_group) + "\", MODE=\"0660\"\n";
   return std::string(rule_mark) +
-         "who may open data gloves. Changes to this file are lost at the next update.\n"
+         "who may open data gloves and trackers. Changes to this file are lost at the next "
+         "update.\n"
          "# uaccess: the user at the screen; the group: a machine without a screen.\n"
          "ACTION==\"remove\", GOTO=\"nendo_uaccess_end\"\n"
-         "ENV{ID_NENDO_GLOVE}!=\"1\", GOTO=\"nendo_uaccess_end\"\n"
+         "ENV{ID_NENDO_GLOVE}!=\"1\", ENV{ID_NENDO_TRACKER}!=\"1\", GOTO=\"nendo_uaccess_end\"\n"
          "SUBSYSTEM==\"tty\", " +
          rights +
          "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", ENV{ID_NENDO_MODEL}==\"?*\", " +

@@ -69,10 +69,13 @@ std::string why_maybe(const SerialPortInfo& port) {
 
 /// The links to one port; a string is empty if there is no such link.
 struct PortLinks {
-  std::string nendo;   ///< /dev/nendo/...: a udev rule says that it is a glove
+  std::string nendo;   ///< /dev/nendo/...: a udev rule says that it is a glove or a tracker
   std::string by_id;   ///< /dev/serial/by-id/...: by maker, model and serial number
   std::string by_path; ///< /dev/serial/by-path/...: by its USB port
 };
+
+/// The link to the port of an adapter that `nendo udev bind` has bound to a tracker.
+constexpr std::string_view tracker_link = "/dev/nendo/tracker";
 
 /// Returns all links, by port, e.g. "/dev/ttyUSB0".
 std::map<std::string, PortLinks> find_port_links() {
@@ -106,7 +109,10 @@ GloveCandidate candidate_of_port(const SerialPortInfo& port, const PortLinks& li
     candidate.stable_name.clear();
     candidate.spec = serial_spec(port.path);
   }
-  if (!links.nendo.empty()) {
+  if (links.nendo == tracker_link) {
+    candidate.reason = "a udev rule says that a tracker is there, not a glove";
+    candidate.spec.clear();
+  } else if (!links.nendo.empty()) {
     candidate.reason = "a udev rule names it " + links.nendo;
     candidate.identified = true;
   } else if (port.usb && udev::names_a_glove(join(port.usb->manufacturer, port.usb->product))) {
