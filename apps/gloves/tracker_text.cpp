@@ -19,8 +19,9 @@ using nlohmann::ordered_json;
 
 TurnAngles angles_of(const std::array<double, 4>& turn_xyzw) noexcept {
   const Eigen::Matrix3d turn = Eigen::Quaterniond(turn_xyzw.data()).normalized().matrix();
+  // 0.0 - x, so that zero has no sign.
   return {to_degrees(std::atan2(turn(1, 0), turn(0, 0))),
-          to_degrees(std::asin(std::clamp(-turn(2, 0), -1.0, 1.0))),
+          to_degrees(std::asin(std::clamp(0.0 - turn(2, 0), -1.0, 1.0))),
           to_degrees(std::atan2(turn(2, 1), turn(2, 2)))};
 }
 

@@ -149,6 +149,7 @@ TEST_SUITE("tracker commands") {
     CHECK(seen.exit_code == 0);
     CHECK(static_cast<int>(lines_of(seen.out).size()) == left);
     CHECK(last_object(seen)["replayed_s"].is_number());
+    CHECK(contains(seen.err, " 0 missed"));
     CHECK(nendo::test::nendo({"doctor", replay, "--tracker"}).out.find("0 refused") !=
           std::string::npos);
     const auto glove = nendo::test::nendo({"monitor", replay, "--count", "1"});

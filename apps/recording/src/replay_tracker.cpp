@@ -109,10 +109,15 @@ Result<std::unique_ptr<driver::Tracker>> open_replay(const driver::DeviceSpec& s
     auto again = ChunkReader::open(path);
     if (!again) return nullptr;
     return std::make_unique<RecordedSource<PoseSample>>(
-        *std::move(again), [has_one](const LogEntry& entry) -> std::optional<PoseSample> {
+        *std::move(again),
+        [has_one,
+         number = std::uint64_t{0}](const LogEntry& entry) mutable -> std::optional<PoseSample> {
           auto recorded = pose_of(entry);
           if (!recorded) return std::nullopt;
           recorded->pose.station = has_one ? only_station : station_of(recorded->side);
+          // A tracker numbers the poses of all stations together, and a recording has those of one
+          // hand after those of the other: the gaps in their numbers are no losses.
+          recorded->pose.sequence = number++;
           return recorded->pose;
         });
   };
