@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <optional>
 #include <random>
 #include <span>
@@ -55,7 +55,7 @@ double turn_error_deg(const cv::Matx33d& one, const cv::Matx33d& other) {
 }
 
 /// The value below which 95 % are.
-double max_of(std::vector<double> values) {
+double percentile_95(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() * 95 / 100];
 }
@@ -78,6 +78,7 @@ TEST_SUITE("bracelet_pose") {
 
   TEST_CASE("rendered bracelets are placed to 1 % of their distance, and turned to 1 degree") {
     std::mt19937 random(5);
+    cv::setNumThreads(1); // as the program
     const MarkerDetector detector;
     for (const double distance_m : {0.4, 0.5, 0.6, 0.7, 0.8}) {
       std::vector<double> turn_deg;
@@ -90,12 +91,10 @@ TEST_SUITE("bracelet_pose") {
         RenderedView rendered(true_camera(), random);
         rendered.draw_bracelet(side, truth.turn, truth.position_m);
         const cv::Mat picture = rendered.taken();
-        const auto begin = std::chrono::steady_clock::now();
+        const std::clock_t begin = std::clock(); // the processor's time: the machine may be busy
         const auto markers = detector.find(picture);
         const auto pose = find_bracelet(side, markers, calibrated_camera());
-        milliseconds +=
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-                .count();
+        milliseconds += 1000.0 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
         CHECK_FALSE(find_bracelet(opposite(side), markers, calibrated_camera()));
         if (!pose) continue;
         turn_deg.push_back(turn_error_deg(pose->turn, truth.turn));
@@ -103,11 +102,12 @@ TEST_SUITE("bracelet_pose") {
       }
       REQUIRE(turn_deg.size() > views / 2);
       MESSAGE(distance_m << " m: seen in " << turn_deg.size() << " of " << views << " views; 95 % "
-                         << max_of(turn_deg) << " degrees, " << 100 * max_of(place_part)
-                         << " % of the distance; " << milliseconds / views << " ms per picture");
+                         << percentile_95(turn_deg) << " degrees, "
+                         << 100 * percentile_95(place_part) << " % of the distance; "
+                         << milliseconds / views << " ms of a processor per picture");
       CHECK(turn_deg.size() >= views * 95 / 100);
-      CHECK(max_of(turn_deg) <= 1.0);
-      CHECK(max_of(place_part) <= 0.01);
+      CHECK(percentile_95(turn_deg) <= 1.0);
+      CHECK(percentile_95(place_part) <= 0.01);
     }
   }
 

@@ -1,6 +1,6 @@
 # Debian packages, split as Debian does: the program, the libraries (named by their soname, so that two versions can be
-# installed beside each other), what one builds programs with, and the udev rules, which are no version's and therefore
-# a package of their own. tools/package builds and checks them.
+# installed beside each other), what one builds programs with, the udev rules, which are no version's and therefore
+# a package of their own, and nendo-markers, which needs OpenCV. tools/package builds and checks them.
 set(NENDO_SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(library_package libnendo${NENDO_SOVERSION})
 
@@ -15,6 +15,9 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_COMPONENTS_ALL program library development udev)
+if(NENDO_MARKERS)
+  list(APPEND CPACK_COMPONENTS_ALL markers)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
@@ -49,6 +52,11 @@ nendo_package(development libnendo-dev libdevel "data gloves that shape 3-D mode
 nendo_package(udev nendo-udev misc "data gloves that shape 3-D models - udev rules"
   "This package has the rules by which udev knows data gloves, lets the user at
 the screen open them, and keeps ModemManager off them.")
+if(NENDO_MARKERS)
+  nendo_package(markers nendo-markers science "data gloves that shape 3-D models - wrists tracked by a camera"
+    "This package has nendo-markers, which finds printed bracelets in the pictures
+of a camera, and sends where the wrists are to a run of nendo.")
+endif()
 
 set(same "(= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
@@ -59,6 +67,9 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA
   ${PROJECT_BINARY_DIR}/debian/triggers ${PROJECT_BINARY_DIR}/debian/shlibs)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library_package} ${same}, libeigen3-dev")
 set(CPACK_DEBIAN_UDEV_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_MARKERS_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_MARKERS_PACKAGE_DEPENDS "${library_package} ${same}")
+set(CPACK_DEBIAN_MARKERS_PACKAGE_RECOMMENDS nendo)
 
 # Files that debhelper would make.
 string(TIMESTAMP when "%a, %d %b %Y %H:%M:%S +0000" UTC) # of SOURCE_DATE_EPOCH, if that is set
