@@ -77,7 +77,7 @@ Result<DemoDevice> emulate_glove(Side side, const Options& demo) {
 Result<DemoDevice> emulate_tracker() {
   emulator::EmulatorOptions options;
   options.device = "fastrak";
-  options.motion = "orbit";
+  options.motion = "walk";
   options.tracker.stations = {1, 2};
   options.tracker.noise = true;
   return serve(options);

@@ -109,7 +109,7 @@ TEST_SUITE("open_tracker") {
 
   TEST_CASE("wrong specifications of trackers are usage errors that name what there is") {
     check_usage({"compass:north"}, "sim, fastrak");
-    check_usage({"sim:orbit", "sim:dance"}, "rest, orbit, table, cross");
+    check_usage({"sim:orbit", "sim:dance"}, "rest, orbit, walk, table, cross");
     check_usage({"sim:orbit?station=0"}, "from 1 to 16");
     check_usage({"sim:orbit?station=17"}, "from 1 to 16");
     check_usage({"sim:orbit?station=x"}, "from 1 to 16");

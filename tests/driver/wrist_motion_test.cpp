@@ -13,8 +13,8 @@ using namespace nendo::driver;
 
 namespace {
 
-constexpr std::array motions{WristMotion::rest, WristMotion::orbit, WristMotion::table,
-                             WristMotion::cross};
+constexpr std::array motions{WristMotion::rest, WristMotion::orbit, WristMotion::walk,
+                             WristMotion::table, WristMotion::cross};
 
 double distance_m(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -80,7 +80,7 @@ TEST_SUITE("wrist_motion") {
   }
 
   TEST_CASE("orbit and cross begin from rest, and cross passes the transmitter's plane") {
-    for (const WristMotion motion : {WristMotion::orbit, WristMotion::cross}) {
+    for (const WristMotion motion : {WristMotion::orbit, WristMotion::walk, WristMotion::cross}) {
       const auto first = receiver_pose(motion, 1, 1, 0.0);
       CHECK(distance_m(receiver_pose(motion, 1, 1, 0.001).position_m, first.position_m) < 1e-6);
     }
@@ -103,7 +103,7 @@ TEST_SUITE("wrist_motion") {
     const auto unknown = find_wrist_motion("dance");
     REQUIRE_FALSE(unknown);
     CHECK(unknown.error().code == Errc::usage);
-    CHECK(unknown.error().message.find("rest, orbit, table, cross") != std::string::npos);
+    CHECK(unknown.error().message.find("rest, orbit, walk, table, cross") != std::string::npos);
   }
 }
 

@@ -54,7 +54,7 @@ TEST_SUITE("tracked_run") {
     for (const Case& wrong :
          {Case{{"--left", "sim", "--left-wrist", "sonar:1"}, "unknown kind sonar; known: ", 2},
           Case{{"--left", "sim", "--right-wrist", "sim:orbit"}, "there is no right hand", 2},
-          Case{{"--left", "sim", "--left-wrist", "sim:jump"}, "rest, orbit, table, cross", 2},
+          Case{{"--left", "sim", "--left-wrist", "sim:jump"}, "rest, orbit, walk, table, cross", 2},
           Case{{"--left", "sim", "--left-wrist", "sim:orbit?station=17"}, "1 to 16", 2},
           Case{{"--left", "sim", "--left-wrist", "sim:orbit?speed=2"}, "unknown option speed", 2},
           Case{{"--left", "sim", "--right", "sim", "--left-wrist", "sim:orbit", "--right-wrist",

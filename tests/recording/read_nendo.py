@@ -95,8 +95,26 @@ def loop(b):
     if b.take("B"):
         o["table"] = b.take("4d")
     rules = b.take("B")
-    o["type2_along_surface"], o["clay_scales_few_vertices"] = rules & 1, rules >> 1
+    assert rules in (3, 7), "rules"
+    o["type2_along_surface"], o["clay_scales_few_vertices"], o["tracked"] = rules & 1, rules >> 1 & 1, rules >> 2
     return o
+
+
+def tracker(b):
+    t = {"side": b.take("B"), "station": b.take("H"), "source": b.text(), "model": b.text(), "rate_hz": b.take("d"),
+         "turn": b.take("4d"), "is_filtered": b.take("B")}
+    t["facts"] = [[b.text(), b.text()] for _ in range(b.take("H"))]
+    t.update(zip(("mount_turn", "mount_pose"), (b.take("4d"), b.take("12d"))))
+    t.update(zip(("on_hand", "late_s", "max_distance_m", "filter"), (b.take("B"), b.take("d"), b.take("d"), b.take("B4d"))))
+    t.update(zip(("scale", "lost_ns"), b.take("dq")))
+    return t
+
+
+def pose(b):
+    p = dict(zip(("side", "arrival", "measured", "device_time", "sequence", "station"), b.take("BqqqQH")))
+    p.update({"position": b.take("3d"), "turn": b.take("4d")})
+    p.update(zip(("error", "has_clock"), b.take("BB")))
+    return p
 
 
 def rest(b):
@@ -139,7 +157,7 @@ def sent(b):
 def tape(b):
     forms = {1: sample, 2: lambda e: {"request": e.take("B")}, 5: lambda e: {"side": e.take("B"), "wrist": e.take("7d")}, 4: lambda e: {"gap": e.take("Q")},
              6: lambda e: {**settings(e), **brushes(e), **hold(e)}, 9: lambda e: {"mark": 1}, 10: lambda e: {"clutch": e.take("3B")}, 11: lambda e: {"role": e.take("HBB")},
-             12: lambda e: {"symmetry": e.take("B")}, 13: lambda e: {"puppet": e.take("I")}, 15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source", "max_vertices", "seam", "part"), e.take("IBIdI"))), 16: lambda e: {"wire": e.take("B")}, 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
+             12: lambda e: {"symmetry": e.take("B")}, 13: lambda e: {"puppet": e.take("I")}, 15: lambda e: dict(zip(("input", "on"), e.take("BB"))), 7: lambda e: {"still": 1}, 8: lambda e: dict(zip(("model", "source", "max_vertices", "seam", "part"), e.take("IBIdI"))), 16: lambda e: {"wire": e.take("B")}, 17: pose, 18: lambda e: {"recentre": 1}, 3: lambda e: dict(zip(("tick", "scheduled", "woke"), e.take("Qqq")))}
     entries = []
     while b.left():
         kind, size = b.take("BB")
@@ -189,10 +207,10 @@ def shape(b):
 
 def main():
     data = open(sys.argv[1], "rb").read()
-    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 13, crc32c(data[:12])), "header"
+    assert data[:8] == b"\x89NENDO\r\n" and struct.unpack_from("<HHI", data, 8) == (1, 14, crc32c(data[:12])), "header"
     at = 16
     number = 0
-    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "LOOP": loop, "ORIG": origin, "REST": rest, "PUPP": puppet, "PUPV": puppet_version, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}
+    readers = {"HEAD": head, "GLOV": glove, "HAND": hand, "TRAK": tracker, "LOOP": loop, "ORIG": origin, "REST": rest, "PUPP": puppet, "PUPV": puppet_version, "TAPE": tape, "SHAP": shape, "SENT": sent, "END ": end}
     while at < len(data):
         magic, kind, size, found, check = struct.unpack_from("<4s4sIII", data, at)
         assert magic == b"NCHK" and check == crc32c(data[at:at + 16]) and found == number, f"chunk header at {at}"

@@ -278,6 +278,54 @@ TEST_SUITE("take_reader") {
     CHECK(lines[at]["crc"] == sum_of(live.test.loop->final_shape()).crc);
   }
 
+  TEST_CASE("that reader finds trackers, how they move wrists, and their poses") {
+    RecordedLoop live(Mode::type1, hand::FilterKind::off, false, false, flow::SwitchAction::none,
+                      nullptr, false, true);
+    auto& tracking = live.setup.hands[1].wrist_source->tracking;
+    tracking.mount.T_station_wrist.translation() = Eigen::Vector3d(0.01, -0.02, 0.03);
+    tracking.mount.late_s = 0.015;
+    tracking.filter.kind = hand::FilterKind::one_euro;
+    live.record();
+    PoseSample pose;
+    pose.arrival = pose.measured = HostClock::now();
+    pose.sequence = 5;
+    pose.station = 2;
+    pose.position_m = {0.25, 0.5, -0.125};
+    pose.error = 'k';
+    live.test.poses[1]->try_push(pose);
+    live.test.commands.try_push(flow::Recentre{});
+    live.test.loop->tick(0, pose.arrival, pose.arrival);
+    REQUIRE(live.end());
+    std::vector<json> trackers, poses, recentres;
+    bool is_tracked = false;
+    for (const json& line : read_by_python(live.path)) {
+      if (line["chunk"] == "TRAK") trackers.push_back(line);
+      if (line["chunk"] == "LOOP") is_tracked = line["tracked"] == 1;
+      if (line.contains("position")) poses.push_back(line);
+      if (line.contains("recentre")) recentres.push_back(line);
+    }
+    CHECK(is_tracked);
+    REQUIRE(trackers.size() == 2);
+    CHECK(trackers[1]["side"] == 1);
+    CHECK(trackers[1]["station"] == 2);
+    CHECK(trackers[1]["source"] == "sim:orbit");
+    CHECK(trackers[1]["facts"] == json::parse(R"([["firmware", "1.0"]])"));
+    CHECK(trackers[1]["mount_pose"][3] == 0.01);
+    CHECK(trackers[1]["mount_pose"][7] == -0.02);
+    CHECK(trackers[1]["late_s"] == 0.015);
+    CHECK(trackers[1]["filter"][0] == 1);
+    CHECK(trackers[1]["filter"][1] == tracking.filter.min_cutoff_hz);
+    CHECK(trackers[1]["lost_ns"] == 100'000'000);
+    REQUIRE(poses.size() == 1);
+    CHECK(poses[0]["side"] == 1);
+    CHECK(poses[0]["arrival"] == ns(pose.arrival));
+    CHECK(poses[0]["sequence"] == 5);
+    CHECK(poses[0]["position"] == json::parse("[0.25, 0.5, -0.125]"));
+    CHECK(poses[0]["turn"] == json::parse("[0.0, 0.0, 0.0, 1.0]"));
+    CHECK(poses[0]["error"] == 'k');
+    CHECK(recentres.size() == 1);
+  }
+
   TEST_CASE("a setup that is read and written again is the same to the byte") {
     std::uint32_t chunks = 0;
     const auto bytes = setup_bytes(unusual_setup(), chunks);

@@ -103,7 +103,7 @@ TEST_SUITE("tracked_take") {
     while (const auto chunk = reader->next()) {
       if (chunk->type == chunk_type("LOOP")) {
         has_loop = true;
-        CHECK(std::to_integer<int>(chunk->payload.back()) == 4);
+        CHECK(std::to_integer<int>(chunk->payload.back()) == 7);
       }
       if (chunk->type != tracker_chunk)
         REQUIRE(read_setup_chunk(chunk->type, chunk->payload, without));

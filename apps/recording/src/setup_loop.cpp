@@ -21,7 +21,7 @@ constexpr std::uint32_t max_points =
     puppet::Puppet::max_points; // two hands' fingertips, or a puppet's
 // Rules of the loop, which unreleased programs did not have: an undo reverts a pull in type 1 as a
 // step of its own; type 2 measures along the surface, and clay of few vertices is scaled.
-constexpr std::uint8_t pull_rule = 1, sculptor_rules = 3, tracked_rules = 4;
+constexpr std::uint8_t pull_rule = 1, sculptor_rules = 3, tracked_rules = 7;
 
 void placement_fields(auto& fields, auto& placement) {
   fields.number(placement.units_per_metre, min_number, max_number);

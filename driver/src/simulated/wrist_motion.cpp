@@ -9,14 +9,16 @@
 namespace nendo::driver {
 namespace {
 
-constexpr std::array<std::string_view, 4> names_of_motions{"rest", "orbit", "table", "cross"};
+constexpr std::array<std::string_view, 5> names_of_motions{"rest", "orbit", "walk", "table",
+                                                           "cross"};
 
 using Vector = std::array<double, 3>;
 using Quaternion = std::array<double, 4>; // x y z w
 
 constexpr double full_turn_rad = 2.0 * std::numbers::pi;
 constexpr double orbit_radius_m = 0.3;
-constexpr double orbit_turn_s = 6.0;
+constexpr double orbit_turn_s = 12.0;
+constexpr double walk_turn_s = 6.0;
 constexpr double sway_m = 0.1;
 constexpr double sway_s = 13.0;
 // The circles of the motion `table`: within the range of a wrist, and of uneven size and speed, as
@@ -75,13 +77,19 @@ ReceiverPose rest(std::uint16_t station, std::uint32_t seed, double time_s) noex
 }
 
 ReceiverPose orbit(std::uint16_t station, double time_s) noexcept {
-  const double angle = full_turn_rad * eased(time_s) / orbit_turn_s;
-  const double sway = sway_m * std::sin(full_turn_rad * eased(time_s) / sway_s);
-  const Quaternion walk = about_z(angle);
-  const Vector from_centre = rotated(walk, {0.0, orbit_radius_m * side_of(station), 0.0});
+  const Quaternion turn = about_z(full_turn_rad * eased(time_s) / orbit_turn_s);
+  const Vector from_centre = rotated(turn, {0.0, orbit_radius_m * side_of(station), 0.0});
+  return receiver_at({0.5 + from_centre[0], from_centre[1], -0.1}, turn);
+}
+
+ReceiverPose walk(std::uint16_t station, double time_s) noexcept {
+  const double moving_s = eased(time_s);
+  const Quaternion turn = about_z(full_turn_rad * moving_s / walk_turn_s);
+  const Vector from_centre = rotated(turn, {0.0, orbit_radius_m * side_of(station), 0.0});
+  const double down = sway_m * std::sin(full_turn_rad * moving_s / sway_s);
   const Quaternion palm_inwards = about_x(0.25 * full_turn_rad * side_of(station));
-  return receiver_at({0.5 + from_centre[0], from_centre[1], sway - 0.1},
-                     product(walk, palm_inwards));
+  return receiver_at({0.5 + from_centre[0], from_centre[1], down - 0.1},
+                     product(turn, palm_inwards));
 }
 
 ReceiverPose table(std::uint16_t station, double time_s) noexcept {
@@ -125,6 +133,8 @@ ReceiverPose receiver_pose(WristMotion motion, std::uint16_t station, std::uint3
     return rest(station, seed, time_s);
   case WristMotion::orbit:
     return orbit(station, time_s);
+  case WristMotion::walk:
+    return walk(station, time_s);
   case WristMotion::table:
     return table(station, time_s);
   case WristMotion::cross:

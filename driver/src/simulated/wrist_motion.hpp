@@ -15,8 +15,8 @@ namespace nendo::driver {
 
 enum class WristMotion : std::uint8_t {
   rest,  ///< a hand that is held still, with tremor only
-  orbit, ///< odd stations (left hands) and even ones walk round an object, up and down, with palms
-         ///< inwards
+  orbit, ///< odd stations (left hands) and even ones go round a point, with palms down
+  walk,  ///< the same with palms inwards, faster, and up and down
   table, ///< the exercise for the calibration: the hand lies on a table, the elbow draws circles
   cross, ///< to and fro through the transmitter's plane x = 0
 };
@@ -32,7 +32,7 @@ struct ReceiverPose {
 /// Where the wrist's centre is in the receiver's frame: the receiver is on the forearm's strap.
 inline constexpr std::array<double, 3> receiver_to_wrist_m{0.06, 0.0, 0.025};
 
-/// Returns the pose at `time_s` >= 0. It is continuous; orbit and cross begin from rest.
+/// Returns the pose at `time_s` >= 0. It is continuous; orbit, walk and cross begin from rest.
 NENDO_API ReceiverPose receiver_pose(WristMotion motion, std::uint16_t station, std::uint32_t seed,
                                      double time_s) noexcept;
 

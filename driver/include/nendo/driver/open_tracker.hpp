@@ -46,7 +46,8 @@ open_trackers(std::span<const std::string> specs, std::span<const TrackerDriver>
 NENDO_API Result<void> start_trackers(std::span<const TrackerStation> stations,
                                       std::span<PoseRing* const> rings);
 
-/// Returns the names of the motions of simulated and emulated trackers: rest, orbit, table, cross.
+/// Returns the names of the motions of simulated and emulated trackers: rest, orbit, walk, table,
+/// cross.
 NENDO_API std::vector<std::string_view> wrist_motion_names();
 
 /// Returns the library's drivers, then `more`.
