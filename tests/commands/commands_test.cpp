@@ -38,6 +38,7 @@ struct State {
     frame.undo_steps = frame.redo_steps = all ? 1 : 0;
     frame.held = frame.symmetric = all;
     frame.function_count = all ? 3 : 0;
+    frame.hands[0].tracked = all;
     frame.parts.count = all ? 2 : 0;
     frame.parts.chosen = all ? 0 : deform::no_index;
     if (all) frame.wire.begin(1.0);
@@ -234,7 +235,7 @@ TEST_SUITE("commands") {
       ++refused;
       CHECK(is_sentence(answer.refusal));
     }
-    CHECK(refused == 10);
+    CHECK(refused == 11);
   }
 
   TEST_CASE("a timeline's command that is not possible says why, and each command has its row") {

@@ -131,10 +131,10 @@ TEST_SUITE("tracker_screen") {
   }
 
   TEST_CASE("a device argument is a tracker by its kind, its motion, or because the user says so") {
-    for (const std::string spec : {"sim:orbit", "sim:table?station=2", "sim:cross"})
+    for (const std::string spec : {"sim:orbit", "sim:walk?station=2", "sim:cross"})
       CHECK(is_tracker(spec, false));
     for (const std::string spec :
-         {"sim", "sim:rest", "sim:sculpt", "sim:touch", "serial:/dev/ttyUSB0", "auto",
+         {"sim", "sim:rest", "sim:table", "sim:sculpt", "sim:touch", "serial:/dev/ttyUSB0", "auto",
           "replay:take.nendo", "bogus:1", "", "/dev/ttyUSB0"}) {
       CAPTURE(spec);
       CHECK_FALSE(is_tracker(spec, false));
