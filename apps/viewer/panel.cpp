@@ -271,8 +271,11 @@ void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) co
     const auto& hand = frame.hands[slot];
     if (!hand.present) continue;
     ImGui::TextWrapped("%s: %s", std::string(name_of(side)).c_str(), gauges.gloves[slot].c_str());
-    ImGui::Text("%llu samples%s", static_cast<unsigned long long>(hand.samples),
-                hand.silent ? " (silent)" : "");
+    ImGui::Text("%llu samples%s%s", static_cast<unsigned long long>(hand.samples),
+                hand.silent ? " (silent)" : "",
+                !hand.tracked ? ""
+                : hand.lost   ? ", wrist lost"
+                              : ", wrist tracked");
     ImGui::PushTextWrapPos(0.0F);
     ImGui::TextUnformatted(driver::in_words(gauges.counts[slot]).c_str());
     ImGui::PopTextWrapPos();

@@ -38,7 +38,8 @@ struct UpdateHead {
   /// Bit 0: the hands hold the model; 1, 2: left, right is uncalibrated; 3: StepList::in_hand; 4,
   /// 5: left, right has released the puppet; 6: symmetric; 7: there is a puppet.
   std::uint8_t state = 0;
-  /// Bits 0, 1: left, right is present; 2, 3: silent; 4, 5: swapped bones.
+  /// Bits 0, 1: left, right is present; 2, 3: silent; 4, 5: swapped bones; 6, 7: the
+  /// tracker has lost the wrist.
   std::uint8_t hands = 0;
   std::uint8_t status = 0;
   std::uint32_t steps = 0;

@@ -204,9 +204,9 @@ class Panel {
     }
     part.hidden = !hand
     if (!hand) return
-    part.className = hand.silent ? 'glove silent' : 'glove'
+    part.className = hand.silent || hand.wristLost ? 'glove silent' : 'glove'
     const { sent, delivered, missed, refused, bad } = hand.records
-    part.firstChild.textContent = `${slot === 0 ? 'left' : 'right'}: ${hand.samples} samples${hand.silent ? ', silent' : ''}${hand.uncalibrated ? ', uncalibrated' : ''}; ` +
+    part.firstChild.textContent = `${slot === 0 ? 'left' : 'right'}: ${hand.samples} samples${hand.silent ? ', silent' : ''}${hand.wristLost ? ', wrist lost' : ''}${hand.uncalibrated ? ', uncalibrated' : ''}; ` +
       (missed === 0xFFFFFFFF ? `${delivered} delivered, losses on the line unknown`
         : `${sent} sent, ${delivered} delivered, ${missed} missed`) + `, ${refused} refused, ${bad} bad records`
     drawBends(part.lastChild, hand)

@@ -216,6 +216,7 @@ function readUpdate(buffer, model) {
     if (!(bits & 1 << slot)) continue
     const hand = readHand(view, at, model.bones[slot][bits & 16 << slot ? 1 : 0])
     hand.silent = (bits & 4 << slot) !== 0
+    hand.wristLost = (bits & 64 << slot) !== 0
     hand.uncalibrated = (state & 2 << slot) !== 0
     hand.samples = u32(72 + 4 * slot)
     const [bad, delivered, missed, refused] = [80, 88, 96, 104].map(first => u32(first + 4 * slot))
