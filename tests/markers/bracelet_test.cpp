@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <regex>
 #include <string>
 
 #include <doctest/doctest.h>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "markers/marker_detector.hpp"
 #include "markers/sheet.hpp"
@@ -28,9 +31,47 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
+/// Draws the boxes of an SVG, in their order, with two pixels per pixel of the SVG.
+cv::Mat picture_of(const std::string& svg) {
+  cv::Mat picture(2 * 1123, 2 * 794, CV_8U, cv::Scalar(255));
+  const std::string number = "=\"([0-9.]+)\" ";
+  const std::regex box("<rect x" + number + "y" + number + "width" + number + "height" + number +
+                       "fill=\"#(0|f)");
+  for (std::sregex_iterator at(svg.begin(), svg.end(), box); at != std::sregex_iterator(); ++at) {
+    const auto edge = [&](std::size_t which) {
+      return static_cast<int>(std::lround(2 * std::stod((*at)[which])));
+    };
+    const auto far_edge = [&](std::size_t which) {
+      return static_cast<int>(
+          std::lround(2 * (std::stod((*at)[which]) + std::stod((*at)[which + 2]))));
+    };
+    const cv::Rect pixels(cv::Point(edge(1), edge(2)), cv::Point(far_edge(1), far_edge(2)));
+    cv::rectangle(picture, pixels, cv::Scalar((*at)[5] == "f" ? 255 : 0), cv::FILLED);
+  }
+  cv::GaussianBlur(picture, picture, {}, 1.0);
+  return picture;
+}
+
 } // namespace
 
 TEST_SUITE("bracelet") {
+  TEST_CASE("the detector finds each marker of the sheet where it should be") {
+    const auto markers = MarkerDetector().find(picture_of(draw_sheet()));
+    CHECK(markers.size() == 2 * markers_per_bracelet);
+    for (const Marker& marker : markers) {
+      const auto place = find_marker(marker.number);
+      REQUIRE(place);
+      const auto corners = corners_on_sheet(*place);
+      for (std::size_t corner = 0; corner < 4; ++corner)
+        for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+          const double px = 2 * 96 * corners[corner][axis] / 0.0254 - 0.5;
+          const double seen =
+              double{axis == 0 ? marker.corners[corner].x : marker.corners[corner].y};
+          CHECK(std::abs(seen - px) < 1.5);
+        }
+    }
+  }
+
   TEST_CASE("each place has a number of its own, and each number its place") {
     for (int number = 0; number < 2 * markers_per_bracelet; ++number) {
       const auto place = find_marker(number);
