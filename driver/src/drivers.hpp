@@ -139,4 +139,15 @@ Result<std::unique_ptr<Tracker>> open_liberty(const DeviceSpec& spec,
                                               std::span<const std::uint16_t> stations);
 
 } // namespace liberty
+
+namespace flock {
+
+/// Opens `flock:PATH[?station=N&baud=N&hemisphere=NAME]`, an Ascension Flock of Birds or miniBIRD
+/// at a serial port. A station is a bird's address. Without `baud` each rate is tried; one that is
+/// too slow for all birds is refused. `hemisphere` is where the receivers are from the transmitter.
+/// Blocks for 5 s at most, because opening a port can reset the units.
+Result<std::unique_ptr<Tracker>> open_flock(const DeviceSpec& spec,
+                                            std::span<const std::uint16_t> stations);
+
+} // namespace flock
 } // namespace nendo::driver

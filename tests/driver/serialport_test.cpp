@@ -12,6 +12,7 @@
 
 #include <nendo/driver/devices.hpp>
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/driver/open_tracker.hpp>
 
 #include "support/mocked_machine.hpp"
 #include "support/required.hpp"
@@ -105,6 +106,21 @@ TEST_SUITE("serialport") {
     const MockedAdapter adapter("FT232R USB UART", "serial/by-id/usb-FTDI_A1");
     CHECK(resolve_port("/dev/serial/by-id/usb-FTDI_A1") == "/dev/ttyUSB0");
     CHECK(open_transport("/dev/serial/by-id/usb-FTDI_A1", 9'600));
+  }
+
+  TEST_CASE(
+      "RTS can be lowered, and is low at the port of a Flock of Birds, which it would reset") {
+    MockedAdapter adapter("FT232R USB UART");
+    std::atomic<int>& modem_lines = adapter.machine.modem_lines;
+    {
+      auto transport = required(open_transport("/dev/ttyUSB0", 115'200));
+      CHECK(transport->set_rts(false));
+      CHECK((modem_lines & (TIOCM_DTR | TIOCM_RTS)) == TIOCM_DTR);
+      CHECK(transport->set_rts(true));
+      CHECK((modem_lines & TIOCM_RTS) == TIOCM_RTS);
+    }
+    CHECK_FALSE(open_trackers(std::array{std::string("flock:/dev/ttyUSB0?baud=115200")}));
+    CHECK((modem_lines & TIOCM_RTS) == 0);
   }
 
   TEST_CASE("an adapter that anything may hang on is listed, and auto leaves it alone") {

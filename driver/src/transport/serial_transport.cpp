@@ -134,6 +134,9 @@ public:
 
   void discard_input() noexcept override { sp_flush(port_.get(), SP_BUF_INPUT); }
 
+  bool set_rts(bool high) noexcept override {
+    return sp_set_rts(port_.get(), high ? SP_RTS_ON : SP_RTS_OFF) == SP_OK;
+  }
   bool set_baud(int baud) noexcept override { return sp_set_baudrate(port_.get(), baud) == SP_OK; }
 
 private:

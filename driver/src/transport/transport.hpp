@@ -36,6 +36,8 @@ public:
                              std::chrono::milliseconds timeout) noexcept = 0;
   /// Throws away what has arrived and was not read.
   virtual void discard_input() noexcept = 0;
+  /// Sets the modem line RTS, which is high after opening. Returns false if the line has none.
+  virtual bool set_rts(bool /*high*/) noexcept { return false; }
   /// Changes the line's rate. Returns false if the line has no rate, or not this one.
   virtual bool set_baud(int /*baud*/) noexcept { return false; }
   /// Gives a connection up: from now on every call says `gone`, so that the reader connects again.

@@ -16,6 +16,7 @@
 #include "units/emulated_unit.hpp"
 #include "units/fastrak_unit.hpp"
 #include "units/fivedt_unit.hpp"
+#include "units/flock_unit.hpp"
 #include "units/forte_unit.hpp"
 #include "units/lucidgloves_unit.hpp"
 
@@ -45,6 +46,9 @@ constexpr std::array variants{
     EmulatedVariant{"5dt", "connection", "wired", "answers, and streams by command"},
     EmulatedVariant{"5dt", "connection", "wireless", "streams by itself, and hears nothing"},
     EmulatedVariant{"forte", "connection", "usb", "sends after the command to use USB"},
+    EmulatedVariant{"flock", "firmware", "bird", "the first box has the transmitter and a bird"},
+    EmulatedVariant{"flock", "firmware", "erc",
+                    "the first box is an extended range controller; birds follow"},
     EmulatedVariant{"forte", "connection", "bluetooth", "sends after the command to use Bluetooth"},
 };
 
@@ -197,6 +201,30 @@ Result<std::unique_ptr<EmulatedUnit>> make_fastrak(const EmulatorOptions& option
   return std::unique_ptr<EmulatedUnit>(std::make_unique<fastrak::FastrakUnit>(unit));
 }
 
+Result<std::unique_ptr<EmulatedUnit>> make_flock(const EmulatorOptions& options) {
+  const auto chosen = find_variants(options);
+  if (!chosen) return chosen.error();
+  const auto motion = driver::find_wrist_motion(options.motion.empty() ? "orbit" : options.motion);
+  if (!motion) return motion.error();
+  const EmulatedTracker& tracker = options.tracker;
+  flock::FlockUnitOptions unit;
+  unit.has_controller = chosen->firmware == 1;
+  unit.birds = tracker.stations;
+  const unsigned first = unit.has_controller ? 2 : 1;
+  for (const unsigned station : tracker.stations)
+    if (station < first || station > flock::max_units)
+      return usage("stations: birds of this flock have the addresses " + std::to_string(first) +
+                   " to 14");
+  constexpr std::array<unsigned, 7> rates{2400, 4800, 9600, 19200, 38400, 57600, 115200};
+  if (std::find(rates.begin(), rates.end(), tracker.baud) == rates.end())
+    return usage("baud: use 2400, 4800, 9600, 19200, 38400, 57600 or 115200");
+  unit.motion = *motion;
+  unit.seed = options.seed;
+  unit.noise = tracker.noise;
+  unit.baud = tracker.baud;
+  return std::unique_ptr<EmulatedUnit>(std::make_unique<flock::FlockUnit>(unit));
+}
+
 using Happens = Incident::Kind;
 constexpr IncidentSet cyberglove_incidents{
     Happens::glove_out,  Happens::glove_in,     Happens::power_cycle, Happens::switch_on,
@@ -205,6 +233,8 @@ constexpr IncidentSet fastrak_incidents{Happens::glove_out,   Happens::glove_in,
                                         Happens::power_cycle, Happens::switch_on,
                                         Happens::switch_off,  Happens::tracker_error};
 
+constexpr IncidentSet flock_incidents{Happens::power_cycle};
+
 constexpr std::array kinds{
     EmulatedKind{"cyberglove", DeviceType::glove, make_cyberglove, cyberglove_incidents},
     EmulatedKind{
@@ -212,6 +242,7 @@ constexpr std::array kinds{
     EmulatedKind{"5dt", DeviceType::glove, make_unit<FiveDtUnit, FiveDtUnitOptions>, {}},
     EmulatedKind{"forte", DeviceType::glove, make_unit<ForteUnit, ForteUnitOptions>, {}},
     EmulatedKind{"fastrak", DeviceType::tracker, make_fastrak, fastrak_incidents},
+    EmulatedKind{"flock", DeviceType::tracker, make_flock, flock_incidents},
 };
 
 } // namespace
