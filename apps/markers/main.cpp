@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include <opencv2/core/utility.hpp>
+
 #include <nendo/base/result.hpp>
 
 #include "cli/cli.hpp"
@@ -25,6 +27,8 @@ bool names_no_command(int argc, char** argv) {
 int run(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   nendo::cli::install_stop_signals();
+  // One processor is enough for 30 pictures per second. The others are the run's.
+  cv::setNumThreads(1);
   std::string track = "track";
   std::vector<char*> arguments(argv, argv + argc);
   if (names_no_command(argc, argv)) arguments.insert(arguments.begin() + 1, track.data());

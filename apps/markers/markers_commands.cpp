@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <iostream>
 #include <optional>
 #include <span>
@@ -31,14 +32,14 @@ struct PrintOptions {
 
 struct CameraOptions {
   std::string camera = "0";
-  int width_px = 1280;
-  int height_px = 720;
+  std::uint32_t width_px = 1280;
+  std::uint32_t height_px = 720;
 };
 
 struct CalibrateOptions {
   CameraOptions camera;
   std::string out = "camera.toml";
-  int views = 20;
+  std::uint32_t views = 20;
 };
 
 struct TrackOptions {
@@ -66,6 +67,8 @@ Error went_away(const CameraOptions& options) {
 Result<void> calibrate(const CalibrateOptions& options) {
   if (const auto place = cli::check_place("--out", options.out, {".toml"}); !place)
     return place.error();
+  if (options.views < 8 || options.views > 200)
+    return Error{Errc::usage, "--views must be a number from 8 to 200"};
   auto video =
       Video::open(options.camera.camera, options.camera.width_px, options.camera.height_px);
   if (!video) return video.error();
@@ -73,7 +76,7 @@ Result<void> calibrate(const CalibrateOptions& options) {
   if (!video->read(picture)) return went_away(options.camera);
   const MarkerDetector detector;
   SheetCalibration calibration(picture.cols, picture.rows);
-  const auto wanted = static_cast<std::size_t>(options.views);
+  const std::size_t wanted = options.views;
   cli::note("hold the sheet flat and still, near and far, tilted in all directions: " +
             std::to_string(wanted) + " views are taken");
   do {

@@ -7,7 +7,8 @@
 
 namespace nendo::markers {
 
-Result<Video> Video::open(const std::string& source, int width_px, int height_px) {
+Result<Video> Video::open(const std::string& source, std::uint32_t width_px,
+                          std::uint32_t height_px) {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); // the error says it
   Video video;
   const auto number = number_in<int>(source);

@@ -2,6 +2,7 @@
 // Pictures of a camera, or of a file.
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 #include <opencv2/core/mat.hpp>
@@ -15,7 +16,8 @@ class Video {
 public:
   /// Opens camera number `source`, in the size nearest to `width_px` and `height_px` that it has,
   /// or a file of this name. May block for seconds. Error: no_device.
-  static Result<Video> open(const std::string& source, int width_px, int height_px);
+  static Result<Video> open(const std::string& source, std::uint32_t width_px,
+                            std::uint32_t height_px);
 
   /// Waits for the next picture, and makes it grey. Returns false at the end of the file, or if the
   /// camera went away.

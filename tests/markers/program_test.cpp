@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <random>
 #include <string>
 
 #include <doctest/doctest.h>
 #include <netinet/in.h>
-#include <opencv2/videoio.hpp>
 #include <sys/socket.h>
 
 #include <nendo/base/unique_fd.hpp>
@@ -46,11 +46,15 @@ std::string free_port() {
   return std::to_string(ntohs(address.sin_port));
 }
 
-cv::VideoWriter video_at(const std::filesystem::path& path) {
-  cv::VideoWriter video(path.string(), cv::CAP_OPENCV_MJPEG,
-                        cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 30.0, {1280, 720}, false);
-  REQUIRE(video.isOpened());
-  return video;
+/// Writes picture number `at` of a sequence, which OpenCV takes for a video.
+void write_picture(const std::filesystem::path& folder, const std::string& name, int at,
+                   const cv::Mat& picture) {
+  const std::string number = (at < 10 ? "0" : "") + std::to_string(at);
+  std::ofstream file(folder / (name + number + ".pgm"), std::ios::binary);
+  file << "P5\n" << picture.cols << ' ' << picture.rows << "\n255\n";
+  file.write(reinterpret_cast<const char*>(picture.data),
+             static_cast<std::streamsize>(picture.total()));
+  REQUIRE(file.good());
 }
 
 } // namespace
@@ -59,29 +63,23 @@ TEST_SUITE("markers_program") {
   TEST_CASE("a video of the sheet calibrates, and one of a bracelet becomes poses of a tracker") {
     const TemporaryFolder folder;
     std::mt19937 random(9);
-    {
-      auto video = video_at(folder.path() / "sheet.avi");
-      for (int view = 0; view < 12; ++view) {
-        const cv::Mat picture = sheet_view(random);
-        video.write(picture);
-        video.write(picture); // held still
-      }
+    for (int view = 0; view < 12; ++view) {
+      const cv::Mat picture = sheet_view(random);
+      for (const int twice : {0, 1}) // held still
+        write_picture(folder.path(), "sheet", 2 * view + twice, picture);
     }
     const std::string in = "cd " + folder.path().string() + " && ";
-    const auto calibrated =
-        shell(in + NENDO_MARKERS_PROGRAM " calibrate --camera sheet.avi --views 10 --out cam.toml");
+    const auto calibrated = shell(in + NENDO_MARKERS_PROGRAM
+                                  " calibrate --camera sheet%02d.pgm --views 10 --out cam.toml");
     REQUIRE_MESSAGE(calibrated.exit_code == 0, calibrated.out);
     CHECK(calibrated.out.find("wrote cam.toml") != std::string::npos);
 
     constexpr int pictures = 10;
-    {
-      auto video = video_at(folder.path() / "wrist.avi");
-      for (int at = 0; at < pictures; ++at) {
-        RenderedView view(true_camera(), random);
-        view.draw_bracelet(Side::right, cv::Matx33d(1, 0, 0, 0, -1, 0, 0, 0, -1),
-                           {-0.1 + 0.01 * at, 0.05, 0.6});
-        video.write(view.taken());
-      }
+    for (int at = 0; at < pictures; ++at) {
+      RenderedView view(true_camera(), random);
+      view.draw_bracelet(Side::right, cv::Matx33d(1, 0, 0, 0, -1, 0, 0, 0, -1),
+                         {-0.1 + 0.01 * at, 0.05, 0.6});
+      write_picture(folder.path(), "wrist", at, view.taken());
     }
     const std::string port = free_port();
     const std::array specs{"osc:" + port + "/right"};
@@ -89,9 +87,10 @@ TEST_SUITE("markers_program") {
     PoseRing ring(64);
     const std::array rings{&ring};
     require_ok(driver::start_trackers(stations, rings));
-    const auto tracked = shell(
-        in +
-        NENDO_MARKERS_PROGRAM " --camera wrist.avi --calibration cam.toml --to 127.0.0.1:" + port);
+    const auto tracked = shell(in +
+                               NENDO_MARKERS_PROGRAM
+                               " --camera wrist%02d.pgm --calibration cam.toml --to 127.0.0.1:" +
+                               port);
     REQUIRE_MESSAGE(tracked.exit_code == 0, tracked.out);
     CHECK(tracked.out.find("left in 0, right in 10") != std::string::npos);
     CHECK(eventually([&] { return ring.size() == pictures; }));
@@ -109,7 +108,8 @@ TEST_SUITE("markers_program") {
     CHECK(stations.front().tracker->stats().bad_records == 0);
 
     const auto other = shell(
-        in + NENDO_MARKERS_PROGRAM " track --camera wrist.avi --side left --to 127.0.0.1:" + port);
+        in +
+        NENDO_MARKERS_PROGRAM " track --camera wrist%02d.pgm --side left --to 127.0.0.1:" + port);
     CHECK(other.out.find("left in 0\n") != std::string::npos);
   }
 
