@@ -67,6 +67,11 @@ private:
   SampleRing samples_{4096};
 };
 
+/// Returns a length with a tenth of a millimetre, and zero without a sign.
+std::string tenths(double length_mm) {
+  return cli::fixed(std::round(10.0 * length_mm) / 10.0 + 0.0, 1);
+}
+
 /// Waits for so long, and notes each second that is left. Returns false at a stop signal.
 bool wait_and_count(ExerciseRecorder& recorder, double duration_s, RecordedExercise* exercise,
                     const std::function<void(int)>& note_left) {
@@ -149,8 +154,8 @@ std::vector<std::string> exercise_report(const hand::TrackerCalibration& made) {
             poses};
   const Eigen::Vector3d centre_mm = 1e3 * made.mount.T_station_wrist.translation();
   return {"The wrist is " + cli::fixed(centre_mm.norm(), 0) + " mm from the station: x " +
-              cli::fixed(centre_mm.x(), 1) + ", y " + cli::fixed(centre_mm.y(), 1) + ", z " +
-              cli::fixed(centre_mm.z(), 1) + " mm (uncertain by " +
+              tenths(centre_mm.x()) + ", y " + tenths(centre_mm.y()) + ", z " +
+              tenths(centre_mm.z()) + " mm (uncertain by " +
               cli::fixed(report.centre_uncertainty_mm, 1) + " mm).",
           "Residual: " + cli::fixed(report.residual_mm, 1) +
               " mm. The forearm's cone: " + cli::fixed(report.cone_deg, 0) +

@@ -189,7 +189,7 @@ std::optional<TurnMatch> match_turns(const std::vector<TimedTurn>& by_tracker,
   correlations.reserve(2 * max_shift + 1);
   for (int shift = -max_shift; shift <= max_shift; ++shift)
     correlations.push_back(comparison.correlations(shift));
-  if (correlations[max_shift].isZero()) return std::nullopt;
+  if (correlations[max_shift].isZero()) return TurnMatch{0.0, max_late_s, 0.0, 0.0};
   return match_of(correlations, comparison.duration_s());
 }
 

@@ -26,7 +26,8 @@ inline constexpr double max_late_s = 0.4;
 
 /// `by_tracker` are turns from the forearm (or anything that is fixed to it) to the stage, and
 /// `by_wrist` from the forearm to the hand, which lies flat, within a few degrees, and still. Times
-/// rise. nullopt if the two overlap too shortly, or if one of them does not move.
+/// rise. nullopt if the two overlap too shortly. If one of them does not move, the correlation is
+/// 0.
 std::optional<TurnMatch> match_turns(const std::vector<TimedTurn>& by_tracker,
                                      const std::vector<TimedTurn>& by_wrist);
 

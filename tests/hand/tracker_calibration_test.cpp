@@ -366,6 +366,8 @@ TEST_SUITE("tracker calibration") {
       CAPTURE(gain);
       CHECK(worst.refused == 0);
       CHECK(worst.without_time == 10);
+      Recording one(scene, 800);
+      CHECK(one.calibrate()->report.time_offset == TimeOffset::not_alike);
       CHECK(worst.centre_mm <= 1.0);
     }
   }

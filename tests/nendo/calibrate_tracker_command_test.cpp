@@ -80,6 +80,16 @@ TEST_SUITE("calibrate tracker") {
     CHECK(!mount->on_hand);
   }
 
+  TEST_CASE("a glove that does something else gives no time offset, and the mount is written") {
+    const TemporaryFolder folder;
+    const auto out = folder.path() / "mount.toml";
+    const auto done = calibrate(
+        {"--tracker", "sim:table", "--glove", "sim:wave", "--duration", "6s", "--out", out});
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    CHECK(done.out.find("does not move as the tracker does") != std::string::npos);
+    CHECK(hand::read_mount(out)->late_ms == 0.0);
+  }
+
   TEST_CASE("a station on a still hand has a turn") {
     const TemporaryFolder folder;
     const auto out = folder.path() / "mount.toml";
