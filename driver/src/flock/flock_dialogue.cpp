@@ -38,6 +38,9 @@ bool is_running(std::uint8_t state) noexcept {
   return (state & accessible_bit) == 0 || (state & running_bit) != 0;
 }
 
+/// Attempts after which baud_of_attempt() has returned each rate.
+constexpr std::size_t all_rates = 3 * (bauds.size() - 2);
+
 /// Most attempts use the first rate and the usual one, since units may not hear during a reset.
 int baud_of_attempt(std::size_t attempt, int first) noexcept {
   const int second = first == bauds[0] ? bauds[1] : bauds[0];
@@ -146,7 +149,7 @@ bool Dialogue::find(const Options& options, Identity& identity) {
   const HostTime until = std::min(HostClock::now() + max_search, limit_.deadline);
   for (std::size_t attempt = 0; HostClock::now() < until; ++attempt) {
     if (gone_ || limit_.cancelled.stop_requested()) return false;
-    patience_ = 1 + static_cast<int>(attempt / 3);
+    patience_ = 1 + static_cast<int>(attempt / (options.baud ? 3 : all_rates));
     identity.baud = options.baud.value_or(baud_of_attempt(attempt, first));
     transport_.set_baud(identity.baud);
     if (!stop_stream()) continue;

@@ -64,7 +64,7 @@ std::optional<double> take_number(OscBytes& rest, char type) noexcept {
   case 'd':
     return std::bit_cast<double>(*bits);
   case 'f':
-    return double{std::bit_cast<float>(static_cast<std::uint32_t>(*bits))};
+    return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(*bits)));
   case 'i':
     return static_cast<double>(static_cast<std::int32_t>(*bits));
   default:
