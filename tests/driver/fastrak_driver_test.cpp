@@ -165,10 +165,11 @@ TEST_SUITE("fastrak_driver") {
   }
 
   TEST_CASE("a FASTRAK is found at each rate of its line, and one that is too slow is refused") {
-    for (const auto& [baud, bytes] :
+    for (const auto& [rate, bytes] :
          {std::pair("115200", ""), std::pair("57600", ""), std::pair("38400", "3840"),
           std::pair("19200", "1920"), std::pair("9600", "960")}) {
-      CAPTURE(std::string(baud));
+      const std::string baud = rate; // doctest captures no structured binding
+      CAPTURE(baud);
       const auto port = plug({"--baud", baud});
       const std::string spec = specs_of(port->path(), {1}).front();
       const std::string set = spec + "&baud=" + baud;

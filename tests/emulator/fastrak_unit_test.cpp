@@ -55,7 +55,7 @@ double float_at(std::string_view bytes, std::size_t at) {
   std::uint32_t bits = 0;
   for (std::size_t k = 0; k < 4; ++k)
     bits |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + k])) << (8 * k);
-  return std::bit_cast<float>(bits);
+  return static_cast<double>(std::bit_cast<float>(bits));
 }
 
 /// The station of each record of a stream of records of this length.
@@ -143,19 +143,20 @@ TEST_SUITE("fastrak_unit") {
     CHECK(record.substr(7, 4) == std::string("\x00\x00\xA0\xC1", 4)); // -20
     CHECK(float_at(record, 11) == doctest::Approx(-12.50937).epsilon(1e-6));
     CHECK(record.substr(15) == std::string("\x00\x00\x80\x3F", 4) + std::string(12, '\0') + "\r\n");
-    for (const auto& [items, bytes] : {std::pair<std::string, std::size_t>{"0", 1},
-                                       {"1", 2},
-                                       {"2", 12},
-                                       {"4", 12},
-                                       {"5", 12},
-                                       {"6", 12},
-                                       {"7", 12},
-                                       {"11", 16},
-                                       {"16", 2},
-                                       {"52", 12},
-                                       {"61", 16},
-                                       {"66", 2},
-                                       {"2,11,0", 29}}) {
+    for (const auto& [list, bytes] : {std::pair<std::string, std::size_t>{"0", 1},
+                                      {"1", 2},
+                                      {"2", 12},
+                                      {"4", 12},
+                                      {"5", 12},
+                                      {"6", 12},
+                                      {"7", 12},
+                                      {"11", 16},
+                                      {"16", 2},
+                                      {"52", 12},
+                                      {"61", 16},
+                                      {"66", 2},
+                                      {"2,11,0", 29}}) {
+      const std::string items = list; // doctest captures no structured binding
       CAPTURE(items);
       bench.say("O1," + items + "\r");
       CHECK(bench.poll().size() == 3 + bytes);

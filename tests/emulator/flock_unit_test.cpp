@@ -18,8 +18,8 @@ namespace flock_unit_test {
 using namespace std::chrono_literals;
 using namespace nendo;
 using namespace nendo::emulator;
-using flock::FlockUnit;
-using flock::FlockUnitOptions;
+using nendo::emulator::flock::FlockUnit;
+using nendo::emulator::flock::FlockUnitOptions;
 using nendo::test::Bytes;
 
 namespace {
