@@ -161,7 +161,7 @@ TEST_SUITE("flock_driver") {
     CHECK(turned.wrong == turned.count);
   }
 
-  TEST_CASE("a Flock is found at each rate of its line; one that is too slow is refused") {
+  TEST_CASE("a Flock is found at each rate of its line, and one that is too slow is refused") {
     for (const char* baud : {"115200", "57600", "38400", "19200"}) {
       CAPTURE(baud);
       const auto port = plug({"--baud", baud, "--birds", "1"});

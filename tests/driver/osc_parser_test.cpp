@@ -31,7 +31,7 @@ namespace {
 Bytes number_bytes(std::uint64_t number, unsigned count) {
   Bytes bytes;
   for (unsigned at = count; at-- > 0;)
-    bytes.push_back(static_cast<std::byte>(number >> (8 * at)));
+    bytes.push_back(static_cast<std::byte>(at < sizeof number ? number >> (8 * at) : 0));
   return bytes;
 }
 
