@@ -150,8 +150,9 @@ TEST_SUITE("manual") {
     CHECK(manual.bash("nendo --v") == std::set<std::string>{"--version"});
     CHECK(manual.bash("nendo ru") == std::set<std::string>{"run"});
     CHECK(manual.bash("nendo udev bind /dev/ttyUSB0 --as \"\"") ==
-          std::set<std::string>{"left", "right"});
-    CHECK(manual.bash("nendo udev unbind \"\"") == std::set<std::string>{"left", "right"});
+          std::set<std::string>{"left", "right", "tracker"});
+    CHECK(manual.bash("nendo udev unbind \"\"") ==
+          std::set<std::string>{"left", "right", "tracker"});
     CHECK(manual.bash("nendo emulate --pace h") == std::set<std::string>{"host"});
     CHECK(manual.bash("nendo run --mesh \"\"").empty()); // bash then offers files
     CHECK(manual.bash("nendo run --left sim --mes") == std::set<std::string>{"--mesh"});
