@@ -145,6 +145,24 @@ TEST_SUITE("tracked_wrist") {
     CHECK(std::abs((hands.moved(0) - Vector3d(0.1, 0.2, 0.0)).norm() - 0.05) < 1e-9);
   }
 
+  TEST_CASE(
+      "a recording that begins in the middle leaves the hands where they are, and their counts") {
+    Tracked hands;
+    const Vector3d begin(0.5, 0.0, 0.0), up(0.0, 0.05, 0.0);
+    hands.go(begin, begin);
+    hands.go(begin, begin + up);
+    const Vector3d before = hands.moved(0);
+    const auto counted = hands.test.loop->stats().wrists[0].counts.poses;
+    InputLog log;
+    hands.test.loop->changes().change_log(&log, hands.test.loop->frames().front().shape);
+    hands.go(begin + up, begin + up);
+    hands.go(begin + up, begin + up);
+    CHECK((hands.moved(0) - before).norm() < 1e-9);
+    CHECK(hands.test.loop->stats().wrists[0].counts.poses == counted + 2);
+    hands.go(begin + up, begin + up + up);
+    CHECK((hands.moved(0) - 2.0 * before).norm() < 1e-9);
+  }
+
   TEST_CASE("a station on the back of the hand leaves no turn to the wrist's sensors") {
     test::LoopUnderTest test(Mode::type1, {.rings_of_ball = 16, .gated = false, .tracked = true});
     std::vector<HandInput> inputs = test.inputs;

@@ -13,6 +13,12 @@ TrackedWrists::TrackedWrists(const std::vector<HandInput>& inputs,
   }
 }
 
+hand::TrackingCounts TrackedWrists::Wrist::counts() const noexcept {
+  const hand::TrackingCounts& now = tracking.counts();
+  return {before.poses + now.poses, before.refused + now.refused, before.flips + now.flips,
+          before.losses + now.losses};
+}
+
 bool TrackedWrists::is_on_hand(Side side) const noexcept {
   return of(side) && of(side)->options.mount.on_hand;
 }
@@ -39,7 +45,7 @@ bool TrackedWrists::advance(HostTime now, LoopStats& stats) noexcept {
     WristStats& counted = stats.wrists[slot];
     counted.tracked = true;
     counted.is_lost = wrist->tracking.is_lost();
-    counted.counts = wrist->tracking.counts();
+    counted.counts = wrist->counts();
     counted.releases += far ? 1U : 0U;
   }
   return releases;
@@ -57,6 +63,7 @@ void TrackedWrists::recentre_all() noexcept {
 void TrackedWrists::restart() noexcept {
   for (auto& wrist : wrists_) {
     if (!wrist) continue;
+    wrist->before = wrist->counts();
     wrist->T_stage_placed = wrist->tracking.T_stage_wrist();
     wrist->tracking = hand::WristTracking(wrist->options, wrist->T_stage_placed);
   }
@@ -65,7 +72,7 @@ void TrackedWrists::restart() noexcept {
 void TrackedWrists::show(Side side, HandFrame& frame) const noexcept {
   frame.tracked = has(side);
   frame.lost = frame.tracked && of(side)->tracking.is_lost();
-  frame.flips = frame.tracked ? of(side)->tracking.counts().flips : 0;
+  frame.flips = frame.tracked ? of(side)->counts().flips : 0;
 }
 
 void TrackedWrists::record_latencies(HostTime done, LoopStats& stats) const noexcept {

@@ -64,7 +64,10 @@ private:
     hand::TrackingOptions options;
     Eigen::Isometry3d T_stage_placed;
     hand::WristTracking tracking;
-    bool fresh = false; ///< it got poses in this tick
+    hand::TrackingCounts before{}; ///< the counts until the last restart()
+    bool fresh = false;            ///< it got poses in this tick
+
+    hand::TrackingCounts counts() const noexcept;
   };
   std::optional<Wrist>& of(Side side) noexcept { return wrists_[Placement::index_of(side)]; }
   const std::optional<Wrist>& of(Side side) const noexcept {
