@@ -111,7 +111,7 @@ Error open_error(const std::string& path, int error_number) {
               path + ": the kernel has this port, but there is no node for it here; " + *remedy};
     }
     return {Errc::no_device,
-            path + ": no such port; is the glove plugged in? `nendo devices` lists the ports"};
+            path + ": no such port; is the device plugged in? `nendo devices` lists the ports"};
   case ENOTTY:
   case EISDIR:
     return {Errc::no_device, path + " is not a serial port; `nendo devices` lists the ports"};
