@@ -12,6 +12,7 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <utility>
 
 #include <nendo/base/result.hpp>
 #include <nendo/base/units.hpp>
@@ -114,5 +115,20 @@ private:
 
   ReaderThread reader_; // last: joined before what it uses is gone
 };
+
+/// Opens the port, identifies the device by `deadline`, and makes a Stream of it. Errors: those of
+/// `open_port` and of DeviceProtocol::identify.
+template <class Device, class Stream, class Protocol>
+Result<std::unique_ptr<Device>> open_stream(const std::string& source, OpenPort open_port,
+                                            std::unique_ptr<Protocol> protocol, HostTime deadline) {
+  auto transport = open_port();
+  if (!transport) return transport.error();
+  (*transport)->discard_input();
+  auto info = protocol->identify(**transport, source, IdentifyReason::opening, {deadline, {}});
+  if (!info) return info.error();
+  info->source = source;
+  return std::unique_ptr<Device>(std::make_unique<Stream>(
+      *std::move(info), std::move(open_port), *std::move(transport), std::move(protocol)));
+}
 
 } // namespace nendo::driver

@@ -88,14 +88,8 @@ private:
 Result<std::unique_ptr<Glove>> open_stream_glove(const std::string& source, OpenPort open_port,
                                                  std::unique_ptr<GloveProtocol> protocol,
                                                  HostTime deadline) {
-  auto transport = open_port();
-  if (!transport) return transport.error();
-  (*transport)->discard_input();
-  auto info = protocol->identify(**transport, source, IdentifyReason::opening, {deadline, {}});
-  if (!info) return info.error();
-  info->source = source;
-  return std::unique_ptr<Glove>(std::make_unique<StreamGlove>(
-      *std::move(info), std::move(open_port), *std::move(transport), std::move(protocol)));
+  return open_stream<Glove, StreamGlove>(source, std::move(open_port), std::move(protocol),
+                                         deadline);
 }
 
 } // namespace nendo::driver

@@ -62,14 +62,8 @@ private:
 Result<std::unique_ptr<Tracker>> open_stream_tracker(const std::string& source, OpenPort open_port,
                                                      std::unique_ptr<TrackerProtocol> protocol,
                                                      HostTime deadline) {
-  auto transport = open_port();
-  if (!transport) return transport.error();
-  (*transport)->discard_input();
-  auto info = protocol->identify(**transport, source, IdentifyReason::opening, {deadline, {}});
-  if (!info) return info.error();
-  info->source = source;
-  return std::unique_ptr<Tracker>(std::make_unique<StreamTracker>(
-      *std::move(info), std::move(open_port), *std::move(transport), std::move(protocol)));
+  return open_stream<Tracker, StreamTracker>(source, std::move(open_port), std::move(protocol),
+                                             deadline);
 }
 
 } // namespace nendo::driver
