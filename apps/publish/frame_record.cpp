@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include <nendo_publish.h>
+#include <nendo/hand/angle_sources.hpp>
 
 namespace nendo::publish {
 namespace {
@@ -15,20 +15,36 @@ std::int64_t nanoseconds(HostClock::duration time) noexcept {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(time).count();
 }
 
+void describe_pose(const Eigen::Isometry3d& pose, nendo_publish_joint& out) noexcept {
+  const Eigen::Vector3f place = pose.translation().cast<float>();
+  const Eigen::Quaternionf turn = Eigen::Quaterniond(pose.linear()).normalized().cast<float>();
+  std::memcpy(out.position, place.data(), sizeof out.position);
+  std::memcpy(out.orientation, turn.coeffs().data(), sizeof out.orientation);
+}
+
 void describe_hand(const flow::HandFrame& hand, nendo_publish_hand& out) noexcept {
   out = {};
   if (!hand.present) return;
   out.flags = NENDO_PUBLISH_PRESENT;
   if (hand.silent) out.flags |= NENDO_PUBLISH_SILENT;
   out.samples = hand.samples;
-  for (std::size_t at = 0; at < hand::joint_count; ++at) {
-    const Eigen::Isometry3d& pose = hand.pose.joints[at];
-    const Eigen::Vector3f place = pose.translation().cast<float>();
-    const Eigen::Quaternionf turn = Eigen::Quaterniond(pose.linear()).normalized().cast<float>();
-    std::memcpy(out.joints[at].position, place.data(), sizeof out.joints[at].position);
-    std::memcpy(out.joints[at].orientation, turn.coeffs().data(),
-                sizeof out.joints[at].orientation);
+  for (std::size_t at = 0; at < hand::joint_count; ++at)
+    describe_pose(hand.pose.joints[at], out.joints[at]);
+}
+
+void describe_state(const flow::HandFrame& hand, nendo_publish_hand_state& out) noexcept {
+  if (hand.wrist_switch != WristSwitch::unknown) out.flags |= NENDO_PUBLISH_HAS_SWITCH;
+  if (hand.wrist_switch == WristSwitch::on) out.flags |= NENDO_PUBLISH_SWITCH_ON;
+  if (hand.tracked) out.flags |= NENDO_PUBLISH_TRACKED;
+  if (hand.lost) out.flags |= NENDO_PUBLISH_LOST;
+  const hand::AngleSources sources = hand::angle_sources(hand.sensors, hand.left_out);
+  for (std::size_t at = 0; at < hand::angle_count; ++at) {
+    if (sources[at] == hand::AngleSource::measured) out.measured |= 1U << at;
+    out.angles[at] = hand.angles[hand::angle_at(at)];
   }
+  out.sampled_ns = nanoseconds(hand.sampled.time_since_epoch());
+  out.tracked_ns = nanoseconds(hand.tracked_at.time_since_epoch());
+  describe_pose(hand.T_stage_wrist, out.forearm);
 }
 
 // The numbers in a record are those of the enumerations, which must not change.
@@ -49,6 +65,22 @@ static_assert(published_number(deform::Wendland::c0) == 0 &&
 } // namespace
 
 static_assert(std::size_t{NENDO_PUBLISH_JOINTS} == hand::joint_count);
+static_assert(std::size_t{NENDO_PUBLISH_ANGLES} == hand::angle_count);
+
+nendo_publish_states states_of(const flow::Frame& frame, std::uint64_t number) noexcept {
+  nendo_publish_states states{};
+  states.number = number;
+  states.model = frame.model;
+  std::size_t body = 0; // contacts count the present hands
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!frame.hands[side].present) continue;
+    describe_state(frame.hands[side], states.hands[side]);
+    const flow::HandTouch touch = flow::touch_of(frame.contacts.all(), body++);
+    static_assert(sizeof touch == sizeof states.hands[side].touch);
+    std::memcpy(states.hands[side].touch, touch.data(), sizeof touch);
+  }
+  return states;
+}
 
 std::size_t max_record_words(const LoopOutline& outline) noexcept {
   return head_words + outline.max_fields * (field_words + outline.functions * function_words);

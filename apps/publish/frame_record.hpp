@@ -3,6 +3,7 @@
 // nendo_publish.h, with both hands and the CSRBF update; and a ring of such records.
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <cstdint>
@@ -12,6 +13,8 @@
 #include <nendo/base/seq_lock.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/sculptor.hpp>
+#include <nendo/hand/joints.hpp>
+#include <nendo_publish.h>
 
 namespace nendo::publish {
 
@@ -84,11 +87,17 @@ struct LoopOutline {
   double units_per_metre = 1.0;
   std::size_t max_fields = 0; ///< the maximum per frame
   std::size_t functions = 0;  ///< the number per field
+  /// The radii of the hands' joints, left hand first; 0 if no glove drives the hand.
+  std::array<std::array<float, hand::joint_count>, 2> joint_radii_m{};
 };
 
 /// Returns the length, in words, of the longest record of such a loop. It includes the word of the
 /// SeqLock.
 std::size_t max_record_words(const LoopOutline& outline) noexcept;
+
+/// Returns what gloves and trackers report of the hands, and what these touch, without the stage.
+/// Wait-free.
+nendo_publish_states states_of(const flow::Frame& frame, std::uint64_t number) noexcept;
 
 class FrameRecord {
 public:

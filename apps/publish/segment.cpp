@@ -252,6 +252,11 @@ void store_all(const std::vector<T>& values, AtomicWord* to) {
   store_words(words, to);
 }
 
+template <class T>
+std::array<std::uint64_t, sizeof(T) / 8> words_of(const T& value) noexcept {
+  return std::bit_cast<std::array<std::uint64_t, sizeof(T) / 8>>(value);
+}
+
 std::int64_t now_ns(clockid_t clock) noexcept {
   timespec now{};
   ::clock_gettime(clock, &now);
@@ -261,6 +266,9 @@ std::int64_t now_ns(clockid_t clock) noexcept {
 constexpr std::size_t newest_word = offsetof(nendo_publish_header, newest) / 8;
 constexpr std::size_t heartbeat_word = offsetof(nendo_publish_header, heartbeat_ns) / 8;
 constexpr std::size_t state_word = offsetof(nendo_publish_header, state) / 8;
+
+// The radii of joints follow the setup, whose stage guards them, too.
+constexpr std::size_t radii_offset = sizeof(nendo_publish_header) + sizeof(nendo_publish_setup);
 
 // The word that `state` shares with a reserved number.
 std::uint64_t state_words(std::uint32_t state) noexcept {
@@ -288,11 +296,13 @@ nendo_publish_header plan_segment(const LoopOutline& outline) noexcept {
   plan.shape_stride = whole_lines(8 * shape_slot_words(vertices));
   plan.shape_slots = 4;
   plan.setup_offset = sizeof(nendo_publish_header);
-  plan.triangles_offset = plan.setup_offset + sizeof(nendo_publish_setup);
+  plan.triangles_offset = whole_lines(radii_offset + sizeof outline.joint_radii_m);
   plan.rest_offset = whole_lines(plan.triangles_offset + 12 * triangles);
   plan.records_offset = whole_lines(plan.rest_offset + 12 * vertices);
   plan.shapes_offset = plan.records_offset + plan.record_slots * plan.record_stride;
-  plan.segment_bytes = plan.shapes_offset + plan.shape_slots * plan.shape_stride;
+  plan.states_stride = whole_lines(sizeof(nendo_publish_states));
+  plan.states_offset = plan.shapes_offset + plan.shape_slots * plan.shape_stride;
+  plan.segment_bytes = plan.states_offset + plan.record_slots * plan.states_stride;
   return plan;
 }
 
@@ -315,6 +325,8 @@ Result<void> SegmentPublisher::lay_out(const LoopOutline& outline) {
   number_ = 0;
   records_ = RecordRing(memory_->words() + plan_.records_offset / 8, plan_.record_slots,
                         plan_.record_stride / 8);
+  states_ = RecordRing(memory_->words() + plan_.states_offset / 8, plan_.record_slots,
+                       plan_.states_stride / 8);
   shapes_ = ShapeRing(memory_->words() + plan_.shapes_offset / 8, plan_.shape_slots,
                       plan_.shape_stride / 8, plan_.vertices);
   counts_.bytes = plan_.segment_bytes;
@@ -343,9 +355,7 @@ void SegmentPublisher::write_header() noexcept {
   header.writer_pid = static_cast<std::uint32_t>(::getpid());
   header.created_monotonic_ns = now_ns(CLOCK_MONOTONIC);
   header.created_realtime_ns = now_ns(CLOCK_REALTIME);
-  std::array<std::uint64_t, sizeof header / 8> words{};
-  std::memcpy(words.data(), &header, sizeof header);
-  store_words(words, memory_->words());
+  store_words(words_of(header), memory_->words());
 }
 
 void SegmentPublisher::write_setup(const LoopOutline& outline) {
@@ -358,13 +368,14 @@ void SegmentPublisher::write_setup(const LoopOutline& outline) {
   setup.units_per_metre = outline.units_per_metre;
   std::memcpy(setup.offset, outline.model->offset.data(), sizeof setup.offset);
   setup.mode = static_cast<std::uint32_t>(1 + static_cast<int>(outline.mode));
-  std::array<std::uint64_t, sizeof setup / 8> words{};
-  std::memcpy(words.data(), &setup, sizeof setup);
+  setup.radii_offset = radii_offset;
+  const auto words = words_of(setup);
   AtomicWord* const all = memory_->words();
   AtomicWord* const place = all + plan_.setup_offset / 8;
   auto& stage = *reinterpret_cast<SeqLock<>*>(place);
   stage.open(generation_);
   store_words(std::span(words).subspan(1), place + 1);
+  store_words(words_of(outline.joint_radii_m), all + radii_offset / 8);
   store_all(deform::corners_of_triangles(*outline.model), all + plan_.triangles_offset / 8);
   store_all(floats_of(layout.pack(), layout), all + plan_.rest_offset / 8);
   stage.close(generation_);
@@ -375,6 +386,8 @@ void SegmentPublisher::show(const flow::Frame& frame) noexcept {
   shapes_.write(number_, frame.shape);
   record_.describe(frame, number_, shapes_.changes());
   records_.write(number_, record_.words());
+  const auto states = words_of(states_of(frame, number_));
+  states_.write(number_, std::span(states).subspan(1));
   AtomicWord* const header = memory_->words();
   header[heartbeat_word].store(
       static_cast<std::uint64_t>(std::chrono::nanoseconds(frame.woke.time_since_epoch()).count()),

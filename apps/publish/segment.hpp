@@ -137,6 +137,7 @@ private:
   std::optional<SharedMemory> memory_;
   nendo_publish_header plan_{};
   RecordRing records_;
+  RecordRing states_;
   ShapeRing shapes_;
   FrameRecord record_;
   std::uint64_t generation_ = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <nendo/hand/hand_body.hpp>
+
 #include "publish/target.hpp"
 
 namespace nendo::session {
@@ -11,14 +13,21 @@ namespace {
 publish::LoopOutline outline_of(const PlacedLoop& placed, const deform::Mesh& model,
                                 const deform::BlockLayout& layout) {
   const auto& options = placed.setup.options;
-  const flow::FrameCapacity most = frame_capacity(placed);
-  return {&model,
-          &layout,
-          options.sculptor.mode,
-          options.rate_hz,
-          placed.setup.placement.units_per_metre,
-          most.fields,
-          most.functions};
+  const flow::FrameCapacity capacity = frame_capacity(placed);
+  publish::LoopOutline outline{&model,
+                               &layout,
+                               options.sculptor.mode,
+                               options.rate_hz,
+                               placed.setup.placement.units_per_metre,
+                               capacity.fields,
+                               capacity.functions};
+  for (const flow::HandInput& input : placed.setup.inputs) {
+    if (input.layer) continue; // played over another input's bones
+    const auto radii = hand::joint_radii_m(input.skeleton(input.first.side));
+    std::copy(radii.begin(), radii.end(),
+              outline.joint_radii_m[flow::Placement::index_of(input.side)].begin());
+  }
+  return outline;
 }
 
 publish::LoopOutline outline_of(const LoopStart& start) {

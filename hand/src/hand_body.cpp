@@ -98,6 +98,16 @@ double middle_finger_m(const HandSkeleton& skeleton) noexcept {
   return sum_m;
 }
 
+/// How much longer the hand is than the average hand.
+double scale_of(const HandSkeleton& skeleton) noexcept {
+  return middle_finger_m(skeleton) / middle_finger_m(HandSkeleton(skeleton.side()));
+}
+
+// Radii of an average hand's palm, in millimetres.
+constexpr double thumb_base_mm = 14.0;
+constexpr double heel_mm = 11.5;
+constexpr double head_mm = 12.0; ///< at the heads of the metacarpals
+
 /// Writes one part after the other. Measures are those of an average hand, in millimetres.
 class Builder {
 public:
@@ -152,7 +162,7 @@ private:
 
   void add_thumb() noexcept {
     const FingerRadii& radii = average_finger_radii[0];
-    const Corner base = corner(place(metacarpals[0]), 14.0);
+    const Corner base = corner(place(metacarpals[0]), thumb_base_mm);
     const Corner knuckle = corner(place(Joint::thumb_proximal), radii.knuckle_mm);
     const Corner end = corner(place(Joint::thumb_distal), radii.end_mm);
     add(base, knuckle, Joint::thumb_metacarpal);
@@ -175,12 +185,12 @@ private:
 
   // Most flesh of the palm lies below the bones.
   Corner heel(std::size_t finger) const noexcept {
-    return corner(below(metacarpals[finger], 5.0), 11.5);
+    return corner(below(metacarpals[finger], 5.0), heel_mm);
   }
   Corner head(std::size_t finger) const noexcept {
     return corner(below(metacarpals[finger], 4.5) + place(joint_after(metacarpals[finger], 1)) -
                       place(metacarpals[finger]),
-                  12.0);
+                  head_mm);
   }
   void add_palm(std::size_t finger) noexcept {
     add(heel(finger), head(finger), head(finger + 1), metacarpals[finger]);
@@ -189,7 +199,7 @@ private:
 
   // The ball of the thumb runs into the palm.
   void add_thumb_side() noexcept {
-    const Corner base = corner(place(metacarpals[0]), 14.0);
+    const Corner base = corner(place(metacarpals[0]), thumb_base_mm);
     const Corner on_thumb =
         corner(0.34 * place(metacarpals[0]) + 0.66 * place(Joint::thumb_proximal), 10.0);
     const Corner on_index =
@@ -224,8 +234,7 @@ ClosestPoint nearest_of(const BodyPart& part, const Vector3d& place_m) noexcept 
   return {near.distance_m, normal, near.centre_m + near.radius_m * normal, 0};
 }
 
-HandBody::HandBody(const HandSkeleton& skeleton) noexcept
-    : scale_(middle_finger_m(skeleton) / middle_finger_m(HandSkeleton(skeleton.side()))) {
+HandBody::HandBody(const HandSkeleton& skeleton) noexcept : scale_(scale_of(skeleton)) {
   follow(skeleton.pose({}, Eigen::Isometry3d::Identity()));
 }
 
@@ -242,6 +251,23 @@ ClosestPoint HandBody::nearest(const Vector3d& place_m) const noexcept {
     best.part = at;
   }
   return best;
+}
+
+JointRadii joint_radii_m(const HandSkeleton& skeleton) noexcept {
+  const double scale_m = 0.001 * scale_of(skeleton);
+  JointRadii radii{};
+  radii[index_of(Joint::palm)] = head_mm * scale_m;
+  radii[index_of(Joint::wrist)] = heel_mm * scale_m;
+  for (std::size_t finger = 0; finger < finger_count; ++finger) {
+    const auto& [knuckle_mm, middle_mm, end_mm, tip_mm] = average_finger_radii[finger];
+    double* at = &radii[index_of(metacarpals[finger])];
+    *at++ = (finger == 0 ? thumb_base_mm : heel_mm) * scale_m;
+    *at++ = static_cast<double>(knuckle_mm) * scale_m;
+    if (finger > 0) *at++ = static_cast<double>(middle_mm) * scale_m;
+    *at++ = static_cast<double>(end_mm) * scale_m;
+    *at = static_cast<double>(tip_mm) * scale_m;
+  }
+  return radii;
 }
 
 } // namespace nendo::hand

@@ -260,6 +260,27 @@ TEST_SUITE("hand_body") {
     CHECK(restraint.counts().allocations == 0);
     CHECK(near.distance_m < 0.0);
   }
+
+  TEST_CASE("joints of fingers have the radius of the body around them, in hands of each size") {
+    for (const double length_m : {0.15, 0.187, 0.22})
+      for (const Side side : {Side::left, Side::right}) {
+        const HandSkeleton skeleton(side, {.length_m = length_m});
+        const HandPose pose = skeleton.pose({}, Isometry3d::Identity());
+        const HandBody body(skeleton);
+        const JointRadii radii = joint_radii_m(skeleton);
+        for (std::size_t at = 0; at < joint_count; ++at)
+          CHECK(radii[at] > 0.005 * length_m / 0.187);
+        for (const Joint metacarpal : metacarpals)
+          for (std::size_t step = 1; step < (metacarpal == metacarpals[0] ? 3U : 4U); ++step) {
+            const Joint joint = joint_after(metacarpal, step);
+            // Bones lie nearer to the back of a finger than to its pad, by a millimetre, and
+            // knuckles lie in the palm.
+            const double depth_m = -body.nearest(pose[joint].translation()).distance_m;
+            CHECK(depth_m > radii[index_of(joint)] - 0.0012 * length_m / 0.187);
+            CHECK(depth_m < radii[index_of(joint)] + 0.003 * length_m / 0.187);
+          }
+      }
+  }
 }
 
 } // namespace hand_body_test

@@ -25,6 +25,18 @@ def hand(at):
             "turns": all(abs(length - 1) < 1e-5 for length in lengths)}
 
 
+def state(at):
+    flags, measured, sampled, tracked = take("2I2q", at)
+    angles, forearm, touch = take("23d", at + 24), take("7f", at + 208), take("6f", at + 236)
+    return {"switch": flags & 3, "tracked": flags >> 2 & 3, "measured": measured, "sampled": sampled, "pose": tracked,
+            "angles": angles, "forearm": forearm, "touch": touch}
+
+
+def states(at, number):
+    both = [state(at + 32), state(at + 32 + 264)]
+    return both if take("2Q", at) == [2 * number + 2, number] else None
+
+
 def record(at, number, generation):
     names = ("number", "generation", "tick", "ticks", "missed", "rest_changes", "shape_jumps", "scheduled", "woke", "since_last",
              "shape_changes")
@@ -57,9 +69,12 @@ def main():
         status = os.fstat(file.fileno())
         segment = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
     assert status.st_mode & 0o7777 == 0o400, "mode"
-    assert take("8s", 0) == b"NENDOPUB" and take("I2HQ", 8) == [0x01020304, 1, 1, len(segment)], "header"
+    assert take("8s", 0) == b"NENDOPUB" and take("I2HQ", 8) == [0x01020304, 1, 2, len(segment)], "header"
     pid, vertices, triangles, slots, shape_slots = take("5I", 24)
     setup, faces, rest, records, stride, shapes, shape_stride, created, _ = take("7Q2q", 48)
+    states_stride, states_at = take("I", 44), take("Q", 120)
+    radii = take("52f", take("I", setup + 68))
+    assert all(0.004 < radius < 0.03 for radius in radii), "radii"
     assert created <= time.clock_gettime_ns(time.CLOCK_MONOTONIC), "created"
     generation = take("Q", setup + 8)
     assert take("Q", setup) == 2 * generation + 2, "setup"
@@ -71,7 +86,10 @@ def main():
         newest = take("Q", 136)
         for number in range(max(following, newest - slots + 2), newest + 1):
             entry = record(records + number % slots * stride, number, generation)
-            if entry:
+            report = states(states_at + number % slots * states_stride, number)
+            if entry and report:
+                entry["states"] = report
+                assert all(side["sampled"] <= entry["woke"] + 5_000_000 for side in report), "times of samples"
                 seen += 1
                 print(json.dumps(entry))
         following = newest + 1

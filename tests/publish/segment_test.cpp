@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -17,6 +19,32 @@ using test::LoopUnderTest;
 using test::MappedSegment;
 using test::Player;
 using test::segment_name;
+
+namespace {
+
+/// Checks the published states of both hands against the frame's.
+void check_states(const MappedSegment& segment, std::uint64_t number, const flow::Frame& frame) {
+  nendo_publish_states states{};
+  REQUIRE(nendo_publish_read_states(segment.base(), number, &states) != 0);
+  CHECK(states.number == number);
+  CHECK(states.model == frame.model);
+  for (std::size_t side = 0; side < 2; ++side) {
+    const flow::HandFrame& hand = frame.hands[side];
+    const nendo_publish_hand_state& state = states.hands[side];
+    CHECK(state.flags == 0); // neither a switch nor a tracker
+    for (std::size_t at = 0; at < hand::angle_count; ++at)
+      CHECK(state.angles[at] == hand.angles[hand::angle_at(at)]);
+    CHECK(state.sampled_ns == hand.sampled.time_since_epoch() / std::chrono::nanoseconds(1));
+    CHECK(state.sampled_ns > 0);
+    CHECK(state.sampled_ns <= frame.woke.time_since_epoch() / std::chrono::nanoseconds(1));
+    CHECK(state.tracked_ns == 0);
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      CHECK(state.forearm.position[axis] ==
+            static_cast<float>(hand.T_stage_wrist.translation()[axis]));
+  }
+}
+
+} // namespace
 
 TEST_SUITE("segment") {
   TEST_CASE("a frame's hands and vertices come out as they are, whatever changed since") {
@@ -57,6 +85,7 @@ TEST_SUITE("segment") {
             CHECK((read.toRotationMatrix() - pose.linear()).cwiseAbs().maxCoeff() < 1e-6);
           }
         }
+        check_states(segment, number, frame);
         const Points expected = test.vertices_of(frame);
         // unpack() gives untouched coordinates their original bits, which float does not hold.
         CHECK((segment.shape(number) - expected).cwiseAbs().maxCoeff() < test::float_gap);
@@ -73,6 +102,74 @@ TEST_SUITE("segment") {
       CHECK(segment.has_ended());
       CHECK(segment.newest() == 150); // and stays readable for who has it mapped
     }
+  }
+
+  TEST_CASE("the states of hands have switch, tracker, touch, and which angles are measured") {
+    flow::Frame frame;
+    frame.model = 3;
+    flow::HandFrame& right = frame.hands[1];
+    right.present = right.tracked = right.lost = true;
+    right.wrist_switch = WristSwitch::on;
+    right.tracked_at = HostTime(std::chrono::nanoseconds(77));
+    right.sensors.add(Sensor::index_mcp);
+    right.sensors.add(Sensor::index_pip);
+    right.sensors.add(Sensor::wrist_yaw);
+    right.left_out.add(Sensor::index_pip);
+    // The only present hand is body 0. Part 5 is the end of its index finger, part 20 of its palm.
+    deform::ClayContact light;
+    light.part = 5;
+    light.load_mm = 0.25F;
+    deform::ClayContact strong;
+    strong.part = 20;
+    strong.load_mm = strong.pressed_mm = 9.0F;
+    frame.contacts.take(std::array{light, strong});
+    const nendo_publish_states states = states_of(frame, 8);
+    CHECK(states.number == 8);
+    CHECK(states.model == 3);
+    const nendo_publish_hand_state& state = states.hands[1];
+    CHECK(state.flags == (NENDO_PUBLISH_HAS_SWITCH | NENDO_PUBLISH_SWITCH_ON |
+                          NENDO_PUBLISH_TRACKED | NENDO_PUBLISH_LOST));
+    CHECK(state.measured == (1U << hand::index_of(hand::Angle::index_mcp_flexion) |
+                             1U << hand::index_of(hand::Angle::wrist_yaw)));
+    CHECK(state.tracked_ns == 77);
+    const std::array<float, 6> touch{0.0F, 0.25F, 0.0F, 0.0F, 0.0F, 1.0F};
+    CHECK(std::equal(touch.begin(), touch.end(), state.touch));
+    const nendo_publish_hand_state none{};
+    CHECK(std::memcmp(&states.hands[0], &none, sizeof none) == 0);
+  }
+
+  TEST_CASE("a reader gets the radii of joints, and neither they nor states from an older writer") {
+    LoopUnderTest test(Mode::type1, {.rings_of_ball = 8});
+    SegmentPublisher publisher(segment_name("radii"), {});
+    auto outline = test::outline_of(test);
+    for (std::size_t at = 0; at < hand::joint_count; ++at)
+      outline.joint_radii_m[1][at] = 0.001F * static_cast<float>(at + 1);
+    test::attach(test, {&publisher});
+    REQUIRE(publisher.begin(outline));
+    const MappedSegment segment(segment_name("radii"));
+    float radii[2][NENDO_PUBLISH_JOINTS];
+    REQUIRE(nendo_publish_read_radii(segment.base(), radii) != 0);
+    CHECK(std::equal(std::begin(radii[1]), std::end(radii[1]), outline.joint_radii_m[1].begin()));
+    CHECK(std::all_of(std::begin(radii[0]), std::end(radii[0]), [](float r) { return r == 0.0F; }));
+    Player player(test);
+    player.next();
+    const auto bytes = segment.header().segment_bytes;
+    std::vector<std::uint64_t> copy(bytes / 8);
+    std::memcpy(copy.data(), segment.base(), bytes);
+    auto& header = *reinterpret_cast<nendo_publish_header*>(copy.data());
+    auto& setup = copy[header.setup_offset / 8];
+    nendo_publish_states states{};
+    CHECK(nendo_publish_read_states(copy.data(), 1, &states) == 1);
+    CHECK(nendo_publish_read_radii(copy.data(), radii) == 1);
+    reinterpret_cast<nendo_publish_setup&>(setup).radii_offset = 0;
+    CHECK(nendo_publish_read_radii(copy.data(), radii) == 0);
+    reinterpret_cast<nendo_publish_setup&>(setup).radii_offset = 0xFFFFFFF8U;
+    CHECK(nendo_publish_read_radii(copy.data(), radii) == 0);
+    header.states_offset = 0;
+    CHECK(nendo_publish_read_states(copy.data(), 1, &states) == 0);
+    CHECK(nendo_publish_is_usable(copy.data(), bytes) == 1);
+    header.states_offset = bytes - 8;
+    CHECK(nendo_publish_is_usable(copy.data(), bytes) == 0);
   }
 
   TEST_CASE("faces become triangles of the same area, over the same vertices") {

@@ -248,7 +248,10 @@ void HandInputs::show(const LoopStats& stats, Frame& frame) const noexcept {
     shown.present = true;
     shown.silent = is_silent(hand.slot);
     shown.samples = stats.samples[hand.slot];
+    shown.sensors = hand.latest.present;
     shown.left_out = hand.left_out();
+    shown.wrist_switch = hand.latest.wrist_switch;
+    shown.sampled = hand.latest.time();
   }
 }
 
@@ -316,12 +319,12 @@ void DeformLoop::Ticker::take_script(HostTime scheduled) noexcept {
   const HostClock::duration since_first =
       stats_.ticks == 0 ? HostClock::duration::zero() : scheduled - first_due_;
   options_.script->play(since_first, [this](const InputLogEntry& entry) noexcept {
-    if (const auto* taken = std::get_if<TakenPose>(&entry)) {
-      take(taken->side, taken->pose);
-    } else if (const auto* taken = std::get_if<TakenSample>(&entry)) {
-      if (taken->hand >= inputs_.count()) return;
-      take(taken->hand, taken->sample);
-      const GloveHand& hand = inputs_[taken->hand];
+    if (const auto* pose = std::get_if<TakenPose>(&entry)) {
+      take(pose->side, pose->pose);
+    } else if (const auto* sample = std::get_if<TakenSample>(&entry)) {
+      if (sample->hand >= inputs_.count()) return;
+      take(sample->hand, sample->sample);
+      const GloveHand& hand = inputs_[sample->hand];
       if (hand.is_topmost) ++stats_.samples[hand.slot];
     } else if (const auto* command = std::get_if<Command>(&entry)) {
       apply(*command);

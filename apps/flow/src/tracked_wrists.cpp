@@ -72,7 +72,9 @@ void TrackedWrists::restart() noexcept {
 void TrackedWrists::show(Side side, HandFrame& frame) const noexcept {
   frame.tracked = has(side);
   frame.lost = frame.tracked && of(side)->tracking.is_lost();
-  frame.flips = frame.tracked ? of(side)->counts().flips : 0;
+  if (!frame.tracked) return;
+  frame.tracked_at = of(side)->tracking.latest().measured;
+  frame.flips = of(side)->counts().flips;
 }
 
 void TrackedWrists::record_latencies(HostTime done, LoopStats& stats) const noexcept {

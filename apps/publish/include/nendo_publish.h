@@ -19,13 +19,20 @@ extern "C" {
 #define NENDO_PUBLISH_MAGIC "NENDOPUB" /* eight bytes, no NUL */
 #define NENDO_PUBLISH_BYTE_ORDER 0x01020304u
 #define NENDO_PUBLISH_MAJOR 1
-#define NENDO_PUBLISH_MINOR 1
+#define NENDO_PUBLISH_MINOR 2
 
-enum { NENDO_PUBLISH_LIVE = 1, NENDO_PUBLISH_ENDED = 2 };           /* header.state */
-enum { NENDO_PUBLISH_PRESENT = 1, NENDO_PUBLISH_SILENT = 2 };       /* hand.flags */
-enum { NENDO_PUBLISH_HELD = 1, NENDO_PUBLISH_FIELDS_LEFT_OUT = 2 }; /* record.flags */
+enum { NENDO_PUBLISH_LIVE = 1, NENDO_PUBLISH_ENDED = 2 };                   /* header.state */
+enum { NENDO_PUBLISH_PRESENT = 1, NENDO_PUBLISH_SILENT = 2 };               /* hand.flags */
+enum { NENDO_PUBLISH_HELD = 1, NENDO_PUBLISH_FIELDS_LEFT_OUT = 2 };         /* record.flags */
 enum { NENDO_PUBLISH_KEEPS_VOLUME = 0x100, NENDO_PUBLISH_HALFWAY = 0x200 }; /* field.kernel */
-enum { NENDO_PUBLISH_JOINTS = 26 }; /* in OpenXR's order (XR_EXT_hand_tracking) */
+enum { NENDO_PUBLISH_JOINTS = 26 };  /* in OpenXR's order (XR_EXT_hand_tracking) */
+enum { NENDO_PUBLISH_ANGLES = 23 };  /* in the order of FORMAT.md */
+enum {                               /* hand_state.flags */
+       NENDO_PUBLISH_HAS_SWITCH = 1, /* the glove reports its wrist switch */
+       NENDO_PUBLISH_SWITCH_ON = 2,
+       NENDO_PUBLISH_TRACKED = 4, /* a tracker moves the wrist */
+       NENDO_PUBLISH_LOST = 8     /* it delivers no good pose, and the wrist is frozen */
+};
 
 struct nendo_publish_header {
   char magic[8];
@@ -35,12 +42,12 @@ struct nendo_publish_header {
   uint32_t writer_pid;
   uint32_t vertices, triangles;
   uint32_t record_slots, shape_slots;
-  uint32_t reserved0;
+  uint32_t states_stride;                               /* of record_slots slots; 0 before 1.2 */
   uint64_t setup_offset, triangles_offset, rest_offset; /* triangles: 3 uint32_t, rest: 3 float */
   uint64_t records_offset, record_stride;
   uint64_t shapes_offset, shape_stride;
   int64_t created_monotonic_ns, created_realtime_ns;
-  uint64_t reserved1;
+  uint64_t states_offset; /* 0 before 1.2 */
   /* From here on it changes. */
   uint32_t state;
   uint32_t reserved2;
@@ -58,8 +65,8 @@ struct nendo_publish_setup {
   double rate_hz;
   double units_per_metre; /* from the stage, on which the hands are, to the model */
   uint32_t mode;          /* at the beginning; 1: type-1, 2: type-2, 3: clay */
-  uint32_t reserved0;
-  double offset[3]; /* of a model far from zero: what all places lack to those of its file */
+  uint32_t radii_offset;  /* 2 times 26 floats, in metres; 0 before 1.2 */
+  double offset[3];       /* of a model far from zero: what all places lack to those of its file */
   uint64_t reserved1[4];
 };
 
@@ -73,6 +80,26 @@ struct nendo_publish_hand {
   uint32_t reserved;
   uint64_t samples; /* received since the loop began */
   struct nendo_publish_joint joints[NENDO_PUBLISH_JOINTS];
+};
+
+/* Since 1.2: what glove and tracker report of a hand, and what it touches. */
+struct nendo_publish_hand_state {
+  uint32_t flags;
+  uint32_t measured;                   /* bit k: a sensor measures angle k; others are estimates */
+  int64_t sampled_ns;                  /* CLOCK_MONOTONIC when the newest sample was measured */
+  int64_t tracked_ns;                  /* and the newest pose of the tracker; 0: none */
+  double angles[NENDO_PUBLISH_ANGLES]; /* radians */
+  struct nendo_publish_joint forearm;  /* its end, from which the wrist's angles turn the hand */
+  float touch[6];                      /* thumb to little finger, palm: 0 none, 1 strongest */
+  uint32_t reserved;
+};
+
+struct nendo_publish_states {
+  uint64_t stage; /* 2 * number + 2: whole */
+  uint64_t number;
+  uint32_t model; /* its version, from 0; another one has other vertices */
+  uint32_t reserved[3];
+  struct nendo_publish_hand_state hands[2]; /* left, right */
 };
 
 struct nendo_publish_record {
@@ -97,9 +124,9 @@ struct nendo_publish_function {
   double coefficient[3];
 };
 
-/* s(x) = sum of coefficient * psi(|x - centre| / radius) + polynomial * (1, x, y, z). Since 1.1: with
- * NENDO_PUBLISH_KEEPS_VOLUME the kernel is a matrix, and there is no polynomial: its first number is
- * the share of clay, 0 to 1. */
+/* s(x) = sum of coefficient * psi(|x - centre| / radius) + polynomial * (1, x, y, z). Since 1.1:
+ * with NENDO_PUBLISH_KEEPS_VOLUME the kernel is a matrix, and there is no polynomial: its first
+ * number is the share of clay, 0 to 1. */
 struct nendo_publish_field {
   uint32_t kernel; /* Wendland 0 C0, 1 C2, 2 C4, 3 C6; and flags from bit 8 on */
   uint32_t functions;
@@ -137,6 +164,8 @@ NENDO_PUBLISH_ASSERT(changes, offsetof(struct nendo_publish_header, state) == 12
 NENDO_PUBLISH_ASSERT(setup, sizeof(struct nendo_publish_setup) == 128);
 NENDO_PUBLISH_ASSERT(hand, sizeof(struct nendo_publish_hand) == 744);
 NENDO_PUBLISH_ASSERT(hands, offsetof(struct nendo_publish_record, hands) == 128);
+NENDO_PUBLISH_ASSERT(hand_state, sizeof(struct nendo_publish_hand_state) == 264);
+NENDO_PUBLISH_ASSERT(states, sizeof(struct nendo_publish_states) == 560);
 NENDO_PUBLISH_ASSERT(record, sizeof(struct nendo_publish_record) == 1616);
 NENDO_PUBLISH_ASSERT(function, sizeof(struct nendo_publish_function) == 56);
 NENDO_PUBLISH_ASSERT(field, sizeof(struct nendo_publish_field) == 104);
@@ -162,6 +191,9 @@ static inline int nendo_publish_is_usable(const void* base, uint64_t bytes) {
          nendo_publish_fits(bytes, h->triangles_offset, h->triangles, 12) &&
          nendo_publish_fits(bytes, h->rest_offset, h->vertices, 12) &&
          nendo_publish_fits(bytes, h->records_offset, h->record_slots, h->record_stride) &&
+         (h->states_offset == 0 ||
+          (h->states_stride >= sizeof(struct nendo_publish_states) && h->states_stride % 8 == 0 &&
+           nendo_publish_fits(bytes, h->states_offset, h->record_slots, h->states_stride))) &&
          nendo_publish_fits(bytes, h->shapes_offset, h->shape_slots, h->shape_stride);
 }
 
@@ -206,6 +238,19 @@ static inline int nendo_publish_read(const void* base, uint64_t number,
   return nendo_publish_still_holds((const uint64_t*)slot, number);
 }
 
+/* Copies the states of both hands that belong to record `number`. 0: it is not there, or no longer,
+ * or the writer is older than 1.2. */
+static inline int nendo_publish_read_states(const void* base, uint64_t number,
+                                            struct nendo_publish_states* states) {
+  const struct nendo_publish_header* h = (const struct nendo_publish_header*)base;
+  const char* slot;
+  if (h->states_offset == 0 || number == 0) return 0;
+  slot = (const char*)base + h->states_offset + number % h->record_slots * h->states_stride;
+  if (!nendo_publish_holds((const uint64_t*)slot, number)) return 0;
+  nendo_publish_copy(states, slot, sizeof *states);
+  return nendo_publish_still_holds((const uint64_t*)slot, number);
+}
+
 /* Copies the shape that belongs to record `number`: 3 * header.vertices floats. Origin and unit are
  * those of that record's generation; another setup may have come since. */
 static inline int nendo_publish_read_shape(const void* base, uint64_t number, float* vertices) {
@@ -234,6 +279,19 @@ static inline int nendo_publish_read_setup(const void* base, struct nendo_publis
   if (rest != NULL)
     nendo_publish_copy(rest, (const char*)base + h->rest_offset, 12 * (uint64_t)h->vertices);
   return nendo_publish_still_holds((const uint64_t*)from, setup->generation);
+}
+
+/* Copies the radii of the flesh about the joints of the left hand and of the right one; 0 of a hand
+ * that no glove drives. 0: the writer is older than 1.2, or a setup is being written. */
+static inline int nendo_publish_read_radii(const void* base, float radii[2][NENDO_PUBLISH_JOINTS]) {
+  const struct nendo_publish_header* h = (const struct nendo_publish_header*)base;
+  struct nendo_publish_setup setup;
+  if (!nendo_publish_read_setup(base, &setup, NULL, NULL) || setup.radii_offset == 0 ||
+      !nendo_publish_fits(h->segment_bytes, setup.radii_offset, 2, 4 * NENDO_PUBLISH_JOINTS))
+    return 0;
+  nendo_publish_copy(radii, (const char*)base + setup.radii_offset, 8 * NENDO_PUBLISH_JOINTS);
+  return nendo_publish_still_holds((const uint64_t*)((const char*)base + h->setup_offset),
+                                   setup.generation);
 }
 
 #ifdef __cplusplus

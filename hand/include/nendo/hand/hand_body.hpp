@@ -56,6 +56,12 @@ private:
   std::array<BodyPart, part_count> parts_;
 };
 
+/// The radii of the hand's flesh about its joints, by index_of(Joint); metres. All > 0.
+using JointRadii = std::array<double, joint_count>;
+
+/// Returns the radii of the hand's body at its joints, at the tips those of the finger's end.
+NENDO_API JointRadii joint_radii_m(const HandSkeleton& skeleton) noexcept;
+
 struct FingerRadii {
   float knuckle_mm, middle_mm, end_mm, tip_mm; ///< from the knuckle to the tip
 };

@@ -35,7 +35,11 @@ struct HandFrame {
   Eigen::Isometry3d T_stage_wrist = Eigen::Isometry3d::Identity();
   std::uint64_t samples = 0;  ///< received since the loop began
   hand::JointAngles angles{}; ///< the angles of the pose
+  SensorMask sensors{};       ///< of its glove's newest sample
   SensorMask left_out{};      ///< stuck sensors of its glove, whose angles are estimated
+  WristSwitch wrist_switch = WristSwitch::unknown; ///< in its glove's newest sample
+  HostTime sampled{};         ///< when its glove's newest sample was measured
+  HostTime tracked_at{};      ///< when the newest good pose of its tracker was measured, if any
   std::uint64_t flips = 0;    ///< poses of a tracked wrist that were mirrored back
 };
 
