@@ -115,11 +115,8 @@ std::size_t FrameRecord::put_field(const deform::CsrbfField& field, std::size_t 
   return end;
 }
 
-void FrameRecord::describe(const flow::Frame& frame, std::uint64_t number,
-                           std::uint64_t shape_changes) noexcept {
+nendo_publish_record head_of(const flow::Frame& frame) noexcept {
   nendo_publish_record head{};
-  head.number = number;
-  head.generation = generation_;
   head.tick = frame.tick;
   head.ticks = frame.ticks_run;
   head.missed = frame.missed;
@@ -128,11 +125,21 @@ void FrameRecord::describe(const flow::Frame& frame, std::uint64_t number,
   head.scheduled_ns = nanoseconds(frame.scheduled.time_since_epoch());
   head.woke_ns = nanoseconds(frame.woke.time_since_epoch());
   head.since_last_ns = nanoseconds(frame.since_last);
-  head.shape_changes = shape_changes;
   head.units_per_metre = frame.units_per_metre;
   if (frame.held) head.flags |= NENDO_PUBLISH_HELD;
   head.status = published_number(frame.status);
   head.mode = static_cast<std::uint8_t>(1 + static_cast<int>(frame.settings.mode));
+  for (std::size_t side = 0; side < 2; ++side)
+    describe_hand(frame.hands[side], head.hands[side]);
+  return head;
+}
+
+void FrameRecord::describe(const flow::Frame& frame, std::uint64_t number,
+                           std::uint64_t shape_changes) noexcept {
+  nendo_publish_record head = head_of(frame);
+  head.number = number;
+  head.generation = generation_;
+  head.shape_changes = shape_changes;
   used_ = head_words;
   for (const auto& field : frame.fields.fields()) {
     const std::size_t end = put_field(field, used_);
@@ -146,8 +153,6 @@ void FrameRecord::describe(const flow::Frame& frame, std::uint64_t number,
     ++head.fields;
   }
   head.fields_bytes = 8 * (used_ - head_words);
-  for (std::size_t side = 0; side < 2; ++side)
-    describe_hand(frame.hands[side], head.hands[side]);
   std::memcpy(words_.data(), &head, sizeof head);
 }
 

@@ -7,13 +7,14 @@
 #include <atomic>
 #include <cassert>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <nendo/base/seq_lock.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/sculptor.hpp>
-#include <nendo/hand/joints.hpp>
+#include <nendo/hand/skeleton.hpp>
 #include <nendo_publish.h>
 
 namespace nendo::publish {
@@ -87,13 +88,17 @@ struct LoopOutline {
   double units_per_metre = 1.0;
   std::size_t max_fields = 0; ///< the maximum per frame
   std::size_t functions = 0;  ///< the number per field
-  /// The radii of the hands' joints, left hand first; 0 if no glove drives the hand.
-  std::array<std::array<float, hand::joint_count>, 2> joint_radii_m{};
+  /// The hands that gloves drive, left hand first.
+  std::array<std::optional<hand::HandSkeleton>, 2> skeletons{};
 };
 
 /// Returns the length, in words, of the longest record of such a loop. It includes the word of the
 /// SeqLock.
 std::size_t max_record_words(const LoopOutline& outline) noexcept;
+
+/// Returns the head of a frame's record, with both hands but without number, generation, changes of
+/// the shape and fields. Wait-free.
+nendo_publish_record head_of(const flow::Frame& frame) noexcept;
 
 /// Returns what gloves and trackers report of the hands, and what these touch, without the stage.
 /// Wait-free.

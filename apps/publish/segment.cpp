@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include <nendo/deform/triangles.hpp>
+#include <nendo/hand/hand_body.hpp>
 
 #include "publish/target.hpp"
 
@@ -267,6 +268,19 @@ constexpr std::size_t newest_word = offsetof(nendo_publish_header, newest) / 8;
 constexpr std::size_t heartbeat_word = offsetof(nendo_publish_header, heartbeat_ns) / 8;
 constexpr std::size_t state_word = offsetof(nendo_publish_header, state) / 8;
 
+using PublishedRadii = std::array<std::array<float, hand::joint_count>, 2>; ///< metres
+
+PublishedRadii radii_of(const LoopOutline& outline) {
+  PublishedRadii radii{};
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!outline.skeletons[side]) continue;
+    const hand::JointRadii radii_m = hand::joint_radii_m(*outline.skeletons[side]);
+    std::transform(radii_m.begin(), radii_m.end(), radii[side].begin(),
+                   [](double radius_m) { return static_cast<float>(radius_m); });
+  }
+  return radii;
+}
+
 // The radii of joints follow the setup, whose stage guards them, too.
 constexpr std::size_t radii_offset = sizeof(nendo_publish_header) + sizeof(nendo_publish_setup);
 
@@ -296,7 +310,7 @@ nendo_publish_header plan_segment(const LoopOutline& outline) noexcept {
   plan.shape_stride = whole_lines(8 * shape_slot_words(vertices));
   plan.shape_slots = 4;
   plan.setup_offset = sizeof(nendo_publish_header);
-  plan.triangles_offset = whole_lines(radii_offset + sizeof outline.joint_radii_m);
+  plan.triangles_offset = whole_lines(radii_offset + sizeof(PublishedRadii));
   plan.rest_offset = whole_lines(plan.triangles_offset + 12 * triangles);
   plan.records_offset = whole_lines(plan.rest_offset + 12 * vertices);
   plan.shapes_offset = plan.records_offset + plan.record_slots * plan.record_stride;
@@ -375,7 +389,7 @@ void SegmentPublisher::write_setup(const LoopOutline& outline) {
   auto& stage = *reinterpret_cast<SeqLock<>*>(place);
   stage.open(generation_);
   store_words(std::span(words).subspan(1), place + 1);
-  store_words(words_of(outline.joint_radii_m), all + radii_offset / 8);
+  store_words(words_of(radii_of(outline)), all + radii_offset / 8);
   store_all(deform::corners_of_triangles(*outline.model), all + plan_.triangles_offset / 8);
   store_all(floats_of(layout.pack(), layout), all + plan_.rest_offset / 8);
   stage.close(generation_);

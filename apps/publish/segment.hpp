@@ -1,5 +1,5 @@
 #pragma once
-// The shared-memory segment of `--publish shm:NAME`. It has a header, the data of the loop, a ring
+// The shared-memory segment of `--to shm:NAME`. It has a header, the data of the loop, a ring
 // of records and a ring of shapes.
 
 #include <cstddef>

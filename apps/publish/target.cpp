@@ -10,6 +10,7 @@
 #include <netdb.h>
 
 #include <nendo/base/number_in.hpp>
+#include <nendo/base/text.hpp>
 
 namespace nendo::publish {
 namespace {
@@ -53,15 +54,15 @@ Result<Target> parse_segment(std::string_view text, std::string_view rest) {
   return Target(target);
 }
 
-Result<Target> parse_datagrams(std::string_view text, std::string_view rest) {
-  const std::size_t colon = rest.rfind(':');
-  const std::string_view port = colon == std::string_view::npos ? rest : rest.substr(colon + 1);
+Result<void> find_address(std::string_view text, std::string_view place, OscTarget& target) {
+  const std::size_t colon = place.rfind(':');
+  const std::string_view port = colon == std::string_view::npos ? place : place.substr(colon + 1);
   std::string host =
-      colon == std::string_view::npos ? "127.0.0.1" : std::string(rest.substr(0, colon));
+      colon == std::string_view::npos ? "127.0.0.1" : std::string(place.substr(0, colon));
   const auto number = number_in<std::uint16_t>(port);
   if (!number || *number == 0)
-    return wrong(text, "use udp:PORT, udp:ADDRESS:PORT or udp:[ADDRESS]:PORT, with a port of 1 to "
-                       "65535");
+    return wrong(text, "use PORT, ADDRESS:PORT or [ADDRESS]:PORT after the colon, with a port of 1 "
+                       "to 65535");
   const bool bracketed = host.size() > 2 && host.front() == '[' && host.back() == ']';
   if (bracketed) host = host.substr(1, host.size() - 2);
   addrinfo wanted{};
@@ -69,9 +70,8 @@ Result<Target> parse_datagrams(std::string_view text, std::string_view rest) {
   wanted.ai_socktype = SOCK_DGRAM;
   wanted.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
   addrinfo* found = nullptr;
-  DatagramTarget target;
   if (::getaddrinfo(host.c_str(), std::string(port).c_str(), &wanted, &found) != 0)
-    return wrong(text, "use a numeric address; one of IPv6 in brackets: udp:[::1]:9000");
+    return wrong(text, "use a numeric address; one of IPv6 in brackets: [::1]:9000");
   const bool fits = found->ai_addrlen <= sizeof target.address;
   if (fits) {
     std::memcpy(&target.address, found->ai_addr, found->ai_addrlen);
@@ -79,6 +79,24 @@ Result<Target> parse_datagrams(std::string_view text, std::string_view rest) {
   }
   ::freeaddrinfo(found);
   if (!fits) return wrong(text, "use an address of IPv4 or IPv6");
+  return {};
+}
+
+Result<Target> parse_osc(std::string_view text, OscFormat format, std::string_view rest) {
+  OscTarget target;
+  target.format = format;
+  const std::size_t mark = rest.find('?');
+  if (mark != std::string_view::npos) {
+    constexpr std::string_view key = "rate=";
+    const std::string_view option = rest.substr(mark + 1);
+    if (!option.starts_with(key))
+      return wrong(text, "unknown option; ?rate=HZ sends at most so often");
+    target.rate_hz = to_finite_number(option.substr(key.size()));
+    if (!target.rate_hz || *target.rate_hz < 0.1 || *target.rate_hz > 10'000.0)
+      return wrong(text, "use a rate of 0.1 to 10000 Hz");
+  }
+  if (const auto found = find_address(text, rest.substr(0, mark), target); !found)
+    return found.error();
   return Target(target);
 }
 
@@ -86,14 +104,18 @@ Result<Target> parse_datagrams(std::string_view text, std::string_view rest) {
 
 Result<Target> parse_target(std::string_view text) {
   constexpr std::string_view segment = "shm";
-  constexpr std::string_view datagrams = "udp:";
+  constexpr std::string_view osc = "osc:";
+  constexpr std::string_view vmc = "vmc:";
   if (text == segment) return parse_segment(text, "");
   if (text == "shm:" || text.starts_with("shm:?"))
     return wrong(text, "has no name; use shm:NAME, or shm, which is shm:run");
   if (text.starts_with("shm:") || text.starts_with("shm?"))
     return parse_segment(text, text.substr(text[3] == ':' ? 4 : 3));
-  if (text.starts_with(datagrams)) return parse_datagrams(text, text.substr(datagrams.size()));
-  return wrong(text, "use shm:NAME, udp:PORT or udp:ADDRESS:PORT");
+  if (text.starts_with(osc)) return parse_osc(text, OscFormat::nendo, text.substr(osc.size()));
+  if (text.starts_with(vmc)) return parse_osc(text, OscFormat::vmc, text.substr(vmc.size()));
+  if (text.starts_with("udp:"))
+    return wrong(text, "is no longer sent; use osc:PORT, or shm:NAME on this machine");
+  return wrong(text, "use shm:NAME, osc:[ADDRESS:]PORT or vmc:[ADDRESS:]PORT");
 }
 
 Error system_error(const std::string& place, const std::string& what, const std::string& remedy) {
@@ -107,9 +129,10 @@ bool is_same_place(const Target& one, const Target& other) noexcept {
   if (one.index() != other.index()) return false;
   if (const auto* segment = std::get_if<SegmentTarget>(&one))
     return segment->name == std::get_if<SegmentTarget>(&other)->name;
-  const auto& [address, length] = *std::get_if<DatagramTarget>(&one);
-  const auto& there = *std::get_if<DatagramTarget>(&other);
-  return length == there.length && std::memcmp(&address, &there.address, length) == 0;
+  const auto& here = *std::get_if<OscTarget>(&one);
+  const auto& there = *std::get_if<OscTarget>(&other);
+  return here.length == there.length &&
+         std::memcmp(&here.address, &there.address, here.length) == 0;
 }
 
 } // namespace nendo::publish

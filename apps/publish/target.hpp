@@ -1,5 +1,5 @@
 #pragma once
-// The places that `--publish` can name, and the errors of opening them.
+// The places that `--to` can name, and the errors of opening them.
 
 #include <optional>
 #include <string>
@@ -18,8 +18,13 @@ struct SegmentTarget {
   std::optional<unsigned> group; ///< that may also read it
 };
 
+/// nendo: messages of this project, which apps/publish/OSC.md lists. vmc: the bones of an avatar.
+enum class OscFormat { nendo, vmc };
+
 /// A numeric address and a port, as sendto() takes them.
-struct DatagramTarget {
+struct OscTarget {
+  OscFormat format = OscFormat::nendo;
+  std::optional<double> rate_hz; ///< max; nothing: each tick
   union {
     sockaddr_storage whole; ///< all zeros at first
     sockaddr any;
@@ -29,17 +34,18 @@ struct DatagramTarget {
   socklen_t length = 0;
 };
 
-using Target = std::variant<SegmentTarget, DatagramTarget>;
+using Target = std::variant<SegmentTarget, OscTarget>;
 
-/// Parses `shm`, `shm:NAME` or `shm:NAME?group=GROUP`; or `udp:PORT` (of this machine),
-/// `udp:ADDRESS:PORT` with a numeric address, or `udp:[ADDRESS]:PORT` with an IPv6 address. It
-/// looks up only the group. Error: usage, in a message without the name of the option.
+/// Parses `shm`, `shm:NAME` or `shm:NAME?group=GROUP`; or `osc:PORT` (of this machine),
+/// `osc:ADDRESS:PORT` with a numeric address, or `osc:[ADDRESS]:PORT` with an IPv6 address, all of
+/// them also with `?rate=HZ`; or the same with `vmc`. It looks up only the group. Error: usage, in
+/// a message without the name of the option.
 Result<Target> parse_target(std::string_view text);
 
 /// Returns the error of the last system call for that place: "PLACE: WHAT: why; REMEDY".
 Error system_error(const std::string& place, const std::string& what, const std::string& remedy);
 
-/// Returns whether both are the same segment, or the same address and port.
+/// Returns whether both are the same segment, or the same address and port, whatever is sent there.
 bool is_same_place(const Target& one, const Target& other) noexcept;
 
 } // namespace nendo::publish

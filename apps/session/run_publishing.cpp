@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include <nendo/hand/hand_body.hpp>
-
 #include "publish/target.hpp"
 
 namespace nendo::session {
@@ -23,9 +21,7 @@ publish::LoopOutline outline_of(const PlacedLoop& placed, const deform::Mesh& mo
                                capacity.functions};
   for (const flow::HandInput& input : placed.setup.inputs) {
     if (input.layer) continue; // played over another input's bones
-    const auto radii = hand::joint_radii_m(input.skeleton(input.first.side));
-    std::copy(radii.begin(), radii.end(),
-              outline.joint_radii_m[flow::Placement::index_of(input.side)].begin());
+    outline.skeletons[flow::Placement::index_of(input.side)] = input.skeleton(input.first.side);
   }
   return outline;
 }
@@ -84,34 +80,35 @@ private:
   publish::SegmentCounts done_; ///< the counts of all segments
 };
 
-class DatagramSink final : public PublishingSink {
+class OscSink final : public PublishingSink {
 public:
-  DatagramSink(std::string text, const publish::DatagramTarget& target)
-      : text_(std::move(text)), datagrams_(text_, target) {}
+  OscSink(std::string text, const publish::OscTarget& target)
+      : text_(std::move(text)), publisher_(text_, target) {}
 
   Result<void> begin(const LoopStart& start) override {
-    return datagrams_.begin(outline_of(start));
+    return publisher_.begin(outline_of(start));
   }
   Result<void> prepare(const flow::ModelVersion&) override { return {}; } // it has no vertices
-  void show(const flow::Frame& frame) noexcept override { datagrams_.show(frame); }
+  void show(const flow::Frame& frame) noexcept override { publisher_.show(frame); }
   PublishedTo end() override {
-    datagrams_.end();
-    return {text_, datagrams_.counts()};
+    publisher_.end();
+    return {text_, publisher_.counts()};
   }
 
 private:
   std::string text_;
-  publish::DatagramPublisher datagrams_;
+  publish::OscPublisher publisher_;
 };
 
 } // namespace
 
 void add_publish_option(cli::Command& command, std::vector<std::string>& targets) {
   command
-      .add_option("--publish", targets,
-                  "Publish every tick for other programs: shm:NAME (hands, CSRBF update and "
-                  "vertices in /dev/shm/nendo-NAME; ?group=GROUP lets a group read it), udp:PORT "
-                  "or udp:ADDRESS:PORT (hands and update). May be repeated")
+      .add_option("--to,--publish", targets,
+                  "Pass every tick to other programs: shm:NAME (hands, CSRBF update and vertices "
+                  "in /dev/shm/nendo-NAME; ?group=GROUP lets a group read it), "
+                  "osc:[ADDRESS:]PORT (hands as OSC messages), vmc:[ADDRESS:]PORT (bones of an "
+                  "avatar, by the VMC protocol); both with ?rate=HZ. May be repeated")
       .once_each("TARGET");
 }
 
@@ -121,19 +118,19 @@ publish_to(const std::vector<std::string>& targets) {
   std::vector<publish::Target> places;
   for (const auto& text : targets) {
     const auto target = publish::parse_target(text);
-    if (!target) return Error{Errc::usage, "--publish " + target.error().message};
+    if (!target) return Error{Errc::usage, "--to " + target.error().message};
     const auto same = std::find_if(places.begin(), places.end(), [&](const auto& place) {
       return publish::is_same_place(place, *target);
     });
     if (same != places.end())
-      return Error{Errc::usage, "--publish " + text + ": is the same target as " +
+      return Error{Errc::usage, "--to " + text + ": is the same target as " +
                                     targets[static_cast<std::size_t>(same - places.begin())] +
                                     "; give it once"};
     places.push_back(*target);
     if (const auto* segment = std::get_if<publish::SegmentTarget>(&*target)) {
       sinks.push_back(std::make_unique<SegmentSink>(text, *segment));
-    } else if (const auto* datagrams = std::get_if<publish::DatagramTarget>(&*target)) {
-      sinks.push_back(std::make_unique<DatagramSink>(text, *datagrams));
+    } else if (const auto* osc = std::get_if<publish::OscTarget>(&*target)) {
+      sinks.push_back(std::make_unique<OscSink>(text, *osc));
     }
   }
   return sinks;

@@ -1,5 +1,5 @@
 #pragma once
-// The option --publish: sends every frame to other programs.
+// The option --to: sends every frame to other programs.
 
 #include <memory>
 #include <string>
@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "publish/datagrams.hpp"
+#include "publish/osc_publisher.hpp"
 #include "publish/segment.hpp"
 #include "session/sink.hpp"
 
 namespace nendo::session {
 
-/// The result of one --publish.
+/// The result of one --to.
 struct PublishedTo {
   std::string target; ///< the option's value
-  std::variant<publish::SegmentCounts, publish::DatagramCounts> counts{};
+  std::variant<publish::SegmentCounts, publish::OscCounts> counts{};
 };
 
 /// Publishes to one target.

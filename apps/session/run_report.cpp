@@ -255,10 +255,11 @@ void print_published(const RunOutcome& outcome) {
                 fmt::format("{}, {} ticks, {} bytes{}", to.target, segment->records,
                             cli::thousands(segment->bytes),
                             segment->is_locked ? "" : ", not locked in memory (see --mlockall)"));
-    if (const auto* sent = std::get_if<publish::DatagramCounts>(&to.counts))
+    if (const auto* sent = std::get_if<publish::OscCounts>(&to.counts))
       print_row("published",
-                fmt::format("{}, {} ticks, {} datagrams, {} refused, {} ticks lost", to.target,
-                            sent->records, sent->datagrams, sent->refused, sent->lost));
+                fmt::format("{}, {} of {} ticks, {} datagrams, {} refused, {} ticks lost",
+                            to.target, sent->sent, sent->records, sent->datagrams, sent->refused,
+                            sent->lost));
   }
 }
 

@@ -128,11 +128,12 @@ ordered_json published_json(const RunOutcome& outcome) {
                       {"bytes", segment->bytes},
                       {"shape_changes", segment->shape_changes},
                       {"locked", segment->is_locked}});
-    if (const auto* sent = std::get_if<publish::DatagramCounts>(&to.counts))
+    if (const auto* sent = std::get_if<publish::OscCounts>(&to.counts))
       list.push_back({{"target", to.target},
                       {"records", sent->records},
                       {"bytes", sent->bytes},
                       {"datagrams", sent->datagrams},
+                      {"skipped_records", sent->skipped},
                       {"lost_records", sent->lost},
                       {"refused_datagrams", sent->refused}});
   }

@@ -31,6 +31,7 @@ inline publish::LoopOutline outline_of(const LoopUnderTest& test) {
   outline.max_fields = test.loop->frames().front().fields.capacity();
   outline.functions =
       static_cast<std::size_t>(test.options.sculptor.deformer.supports.functions(10));
+  outline.skeletons = {hand::HandSkeleton(Side::left), hand::HandSkeleton(Side::right)};
   return outline;
 }
 

@@ -6,6 +6,8 @@
 #include <random>
 #include <thread>
 
+#include <nendo/hand/hand_body.hpp>
+
 #include "publish/publish_fixtures.hpp"
 #include "publish/segment.hpp"
 
@@ -142,14 +144,15 @@ TEST_SUITE("segment") {
     LoopUnderTest test(Mode::type1, {.rings_of_ball = 8});
     SegmentPublisher publisher(segment_name("radii"), {});
     auto outline = test::outline_of(test);
-    for (std::size_t at = 0; at < hand::joint_count; ++at)
-      outline.joint_radii_m[1][at] = 0.001F * static_cast<float>(at + 1);
+    outline.skeletons = {std::nullopt, hand::HandSkeleton(Side::right, {.length_m = 0.2})};
     test::attach(test, {&publisher});
     REQUIRE(publisher.begin(outline));
     const MappedSegment segment(segment_name("radii"));
     float radii[2][NENDO_PUBLISH_JOINTS];
     REQUIRE(nendo_publish_read_radii(segment.base(), radii) != 0);
-    CHECK(std::equal(std::begin(radii[1]), std::end(radii[1]), outline.joint_radii_m[1].begin()));
+    const hand::JointRadii expected_m = hand::joint_radii_m(*outline.skeletons[1]);
+    for (std::size_t at = 0; at < hand::joint_count; ++at)
+      CHECK(radii[1][at] == static_cast<float>(expected_m[at]));
     CHECK(std::all_of(std::begin(radii[0]), std::end(radii[0]), [](float r) { return r == 0.0F; }));
     Player player(test);
     player.next();

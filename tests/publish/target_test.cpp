@@ -15,7 +15,7 @@ using namespace nendo::publish;
 namespace {
 
 /// Address and port as the system writes them.
-std::string text_of(const DatagramTarget& target) {
+std::string text_of(const OscTarget& target) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   const bool v6 = target.address.any.sa_family == AF_INET6;
   const void* const address =
@@ -44,25 +44,30 @@ TEST_SUITE("target") {
     CHECK(std::get<SegmentTarget>(*by_number).group == 1234U);
   }
 
-  TEST_CASE("datagrams go to this machine, or to an address that is named") {
-    for (const auto& [text, expected] : {std::pair{"udp:9000", "127.0.0.1 9000"},
-                                         {"udp:192.0.2.7:65535", "192.0.2.7 65535"},
-                                         {"udp:[::1]:1", "::1 1"},
-                                         {"udp:[2001:db8::7]:9000", "2001:db8::7 9000"}}) {
+  TEST_CASE("OSC goes to this machine, or to an address that is named") {
+    for (const auto& [text, expected] : {std::pair{"osc:9000", "127.0.0.1 9000"},
+                                         {"vmc:192.0.2.7:65535", "192.0.2.7 65535"},
+                                         {"osc:[::1]:1?rate=30", "::1 1"},
+                                         {"osc:[2001:db8::7]:9000", "2001:db8::7 9000"}}) {
       const auto target = parse_target(text);
       REQUIRE(target);
-      CHECK(text_of(std::get<DatagramTarget>(*target)) == expected);
+      CHECK(text_of(std::get<OscTarget>(*target)) == expected);
+      const bool is_vmc = std::string(text).starts_with("vmc");
+      CHECK((std::get<OscTarget>(*target).format == OscFormat::vmc) == is_vmc);
     }
+    CHECK(std::get<OscTarget>(*parse_target("vmc:1?rate=30")).rate_hz == 30.0);
+    CHECK_FALSE(std::get<OscTarget>(*parse_target("vmc:1")).rate_hz);
   }
 
   TEST_CASE("places are the same however they are written, with any other readers") {
-    const std::vector<std::vector<std::string>> places{{"shm", "shm:run", "shm:run?group=0"},
-                                                       {"shm:Run"},
-                                                       {"udp:9000", "udp:127.0.0.1:9000"},
-                                                       {"udp:9001"},
-                                                       {"udp:127.0.0.2:9000"},
-                                                       {"udp:[::1]:9000", "udp:[0:0::1]:9000"},
-                                                       {"udp:[::2]:9000"}};
+    const std::vector<std::vector<std::string>> places{
+        {"shm", "shm:run", "shm:run?group=0"},
+        {"shm:Run"},
+        {"osc:9000", "osc:127.0.0.1:9000", "vmc:9000?rate=5"},
+        {"osc:9001"},
+        {"osc:127.0.0.2:9000"},
+        {"osc:[::1]:9000", "osc:[0:0::1]:9000"},
+        {"osc:[::2]:9000"}};
     for (std::size_t one = 0; one < places.size(); ++one)
       for (std::size_t other = 0; other < places.size(); ++other)
         for (const auto& first : places[one])
@@ -84,19 +89,24 @@ TEST_SUITE("target") {
                                    "shm:x?user=a",
                                    "shm:x?group=",
                                    "shm:x?group=no-such-group",
-                                   "udp",
-                                   "udp:",
-                                   "udp:0",
-                                   "udp:65536",
-                                   "udp:-1",
-                                   "udp:9000x",
-                                   "udp:localhost:9000",
-                                   "udp:1.2.3:x",
-                                   "udp:::1:9000",
-                                   "udp:[::1]",
-                                   "udp:[]:9000",
-                                   "udp:[127.0.0.1]:9000",
-                                   "udp:256.0.0.1:9000",
+                                   "udp:9000",
+                                   "osc",
+                                   "osc:",
+                                   "osc:9000?rate=0",
+                                   "osc:9000?rate=nan",
+                                   "osc:9000?rate=30&rate=40",
+                                   "vmc:9000?group=a",
+                                   "osc:0",
+                                   "osc:65536",
+                                   "osc:-1",
+                                   "osc:9000x",
+                                   "osc:localhost:9000",
+                                   "osc:1.2.3:x",
+                                   "osc:::1:9000",
+                                   "osc:[::1]",
+                                   "osc:[]:9000",
+                                   "osc:[127.0.0.1]:9000",
+                                   "osc:256.0.0.1:9000",
                                    "tcp:9000"}) {
       CAPTURE(text);
       const auto target = parse_target(text);
@@ -106,7 +116,7 @@ TEST_SUITE("target") {
       CHECK(target.error().message.find('\n') == std::string::npos);
     }
     CHECK_FALSE(parse_target("shm:" + std::string(65, 'x')));
-    CHECK_FALSE(parse_target("udp:" + std::string(5000, '9')));
+    CHECK_FALSE(parse_target("osc:" + std::string(5000, '9')));
   }
 }
 

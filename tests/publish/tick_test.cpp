@@ -5,7 +5,7 @@
 
 #include <sys/resource.h>
 
-#include "publish/datagrams.hpp"
+#include "publish/osc_publisher.hpp"
 #include "publish/publish_fixtures.hpp"
 #include "publish/segment.hpp"
 #include "support/restraint.hpp"
@@ -19,8 +19,8 @@ using test::LoopUnderTest;
 
 namespace {
 
-DatagramTarget port_9() {
-  DatagramTarget target;
+OscTarget port_9() {
+  OscTarget target;
   target.length = sizeof target.address.v4;
   target.address.v4.sin_family = AF_INET;
   target.address.v4.sin_port = htons(9);
@@ -52,7 +52,7 @@ TEST_SUITE("publishing_tick") {
     for (const auto mode : {flow::Mode::type1, flow::Mode::type2}) {
       LoopUnderTest test(mode, {.rings_of_ball = 16});
       SegmentPublisher publisher(test::segment_name("tick"), {});
-      DatagramPublisher sender("udp:9", port_9());
+      OscPublisher sender("osc:9", port_9());
       test::attach(test, {&publisher, &sender});
       REQUIRE(publisher.begin(test::outline_of(test)));
       REQUIRE(sender.begin(test::outline_of(test)));

@@ -11,6 +11,7 @@ pkg_check_modules(libusb REQUIRED IMPORTED_TARGET libusb-1.0)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(libyaml REQUIRED IMPORTED_TARGET yaml-0.1)
 pkg_check_modules(expat REQUIRED IMPORTED_TARGET expat)
+pkg_check_modules(liblo REQUIRED IMPORTED_TARGET liblo)
 find_package(nlohmann_json 3.11 REQUIRED) # headers alone: programs that use the libraries do without
 if(NENDO_APPS)
   find_package(CLI11 REQUIRED)

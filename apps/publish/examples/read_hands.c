@@ -1,5 +1,5 @@
 /* Prints, a line each, where both index fingertips are (metres), from every tick that
- * `nendo run --publish shm:NAME` shows; ends with the run, also with one that is killed.
+ * `nendo run --to shm:NAME` shows; ends with the run, also with one that is killed.
  *   cc -std=c99 -o read_hands read_hands.c && ./read_hands NAME */
 #define _POSIX_C_SOURCE 200809L
 #include <fcntl.h>

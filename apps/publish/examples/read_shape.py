@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the newest shape of `nendo run --publish shm:NAME` to standard output, as OBJ: read_shape.py NAME [--at-end].
+"""Writes the newest shape of `nendo run --to shm:NAME` to standard output, as OBJ: read_shape.py NAME [--at-end].
 With --at-end it waits until the run has ended. Needs nothing but Python; FORMAT.md explains the numbers."""
 import fcntl
 import mmap

@@ -1,4 +1,4 @@
-/* What `nendo run --publish shm:NAME` shows in /dev/shm/nendo-NAME, for programs in C99 and C++.
+/* What `nendo run --to shm:NAME` shows in /dev/shm/nendo-NAME, for programs in C99 and C++.
  * /usr/share/doc/libnendo-dev/publish-format.md describes the same byte for byte. Map the file for
  * reading, judge it with nendo_publish_is_usable(), then copy what you want with the functions
  * below: the writer never waits for a reader, so a copy counts only if they return 1. They neither
@@ -142,21 +142,6 @@ struct nendo_publish_shape {
   /* float[3 * vertices], in the mesh's order */
 };
 
-/* Of a UDP datagram; all numbers little-endian. FORMAT.md says what follows it. */
-struct nendo_publish_datagram {
-  char magic[4]; /* NNDO */
-  uint8_t major, minor;
-  uint8_t kind;     /* 1: a hand, 2: a part of an update */
-  uint8_t side;     /* of a hand: 0 left, 1 right */
-  uint64_t session; /* another one, another run or loop */
-  uint64_t number, tick;
-  int64_t woke_ns;
-  uint16_t part, parts;
-  uint32_t offset; /* of this part in the update */
-};
-
-enum { NENDO_PUBLISH_DATAGRAM_BYTES = 1400 }; /* at most */
-
 #define NENDO_PUBLISH_ASSERT(name, condition)                                                      \
   typedef char nendo_publish_assert_##name[(condition) ? 1 : -1] __attribute__((unused))
 NENDO_PUBLISH_ASSERT(header, sizeof(struct nendo_publish_header) == 192);
@@ -170,7 +155,6 @@ NENDO_PUBLISH_ASSERT(record, sizeof(struct nendo_publish_record) == 1616);
 NENDO_PUBLISH_ASSERT(function, sizeof(struct nendo_publish_function) == 56);
 NENDO_PUBLISH_ASSERT(field, sizeof(struct nendo_publish_field) == 104);
 NENDO_PUBLISH_ASSERT(shape, sizeof(struct nendo_publish_shape) == 64);
-NENDO_PUBLISH_ASSERT(datagram, sizeof(struct nendo_publish_datagram) == 48);
 
 static inline int nendo_publish_fits(uint64_t all, uint64_t offset, uint64_t count,
                                      uint64_t bytes) {

@@ -1,0 +1,57 @@
+#include "publish/osc_packer.hpp"
+
+#include <array>
+
+#include <lo/lo.h>
+
+namespace nendo::publish {
+namespace {
+
+constexpr std::size_t element_head_bytes = 4; ///< the length of a message in its bundle
+
+void put_numbers(lo_message message, std::span<const float> numbers) {
+  for (const float number : numbers)
+    lo_message_add_float(message, number);
+}
+
+} // namespace
+
+void OscPacker::add(const char* address, int number) {
+  lo_message message = lo_message_new();
+  lo_message_add_int32(message, number);
+  add_message(address, message);
+}
+
+void OscPacker::add(const char* address, std::span<const float> numbers) {
+  lo_message message = lo_message_new();
+  put_numbers(message, numbers);
+  add_message(address, message);
+}
+
+void OscPacker::add(const char* address, const char* text, std::span<const float> numbers) {
+  lo_message message = lo_message_new();
+  lo_message_add_string(message, text);
+  put_numbers(message, numbers);
+  add_message(address, message);
+}
+
+void OscPacker::add_message(const char* address, void* message) {
+  const std::size_t more = element_head_bytes + lo_message_length(message, address);
+  if (bundle_ != nullptr && lo_bundle_length(bundle_) + more > max_datagram_bytes) flush();
+  if (bundle_ == nullptr) bundle_ = lo_bundle_new(LO_TT_IMMEDIATE);
+  lo_bundle_add_message(bundle_, address, message); // which owns it from here on
+}
+
+void OscPacker::flush() {
+  if (bundle_ == nullptr) return;
+  std::array<std::byte, max_datagram_bytes> datagram;
+  std::size_t bytes = lo_bundle_length(bundle_);
+  if (bytes <= datagram.size()) {
+    lo_bundle_serialise(bundle_, datagram.data(), &bytes);
+    send_(std::span(datagram).first(bytes));
+  }
+  lo_bundle_free_recursive(bundle_);
+  bundle_ = nullptr;
+}
+
+} // namespace nendo::publish
