@@ -19,6 +19,7 @@ void add_commands(cli::Command& program) {
   add_demo(program);
   add_run(program);
   add_view(program);
+  add_serve(program);
   add_monitor(program);
   add_calibrate(program);
   add_poses(program);

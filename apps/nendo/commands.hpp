@@ -36,6 +36,7 @@ void add_recording(cli::Command& program);
 void add_repair(cli::Command& program);
 void add_replay(cli::Command& program);
 void add_run(cli::Command& program);
+void add_serve(cli::Command& program);
 void add_stress(cli::Command& program);
 void add_udev(cli::Command& program);
 void add_view(cli::Command& program); ///< `nendo view`: the same as run in a window

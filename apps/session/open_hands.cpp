@@ -77,13 +77,16 @@ Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
   if (options.loop.policy == flow::OverrunPolicy::sample) options.loop.event_count = &event_count;
   const bool named = !options.left.empty() || !options.right.empty();
   EventCount* const notified = options.loop.event_count;
-  auto hands = named ? open_named(options, model, notified) : open_any(options, notified);
+  auto hands = !options.gloves.empty() ? open_each(options.gloves, notified)
+               : named                 ? open_named(options, model, notified)
+                                       : open_any(options, notified);
   if (!hands) return hands.error();
   if (!options.over) // whose gloves had the switch
     if (const auto fine = check_switch(options.loop.switch_action, *hands); !fine)
       return fine.error();
   if (options.puppet) note_missing_switches(*options.puppet, *hands);
   RunHands opened{*std::move(hands), {}};
+  options.wrists.event_count = notified;
   if (const auto wrists = gloves::open_wrists(opened.hands, options.wrists); !wrists)
     return wrists.error();
   {
@@ -101,10 +104,11 @@ Result<void> check_count(const std::vector<std::string>& specs) {
   return Error{Errc::usage, "GLOVE: takes 1 or 2 gloves, got " + std::to_string(specs.size())};
 }
 
-Result<std::vector<gloves::OpenHand>> open_each(const std::vector<std::string>& specs) {
+Result<std::vector<gloves::OpenHand>> open_each(const std::vector<std::string>& specs,
+                                                EventCount* event_count) {
   std::vector<gloves::OpenHand> hands;
   for (const std::string& spec : specs) {
-    auto hand = gloves::open_hand(spec);
+    auto hand = gloves::open_hand(spec, std::nullopt, event_count);
     if (!hand) return hand.error();
     hands.push_back(*std::move(hand));
   }

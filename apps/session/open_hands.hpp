@@ -29,6 +29,7 @@ Result<RunHands> open_hands(RunOptions& options, const deform::Mesh& model,
 Result<void> check_count(const std::vector<std::string>& specs);
 /// Opens one or two gloves. Errors: those of gloves::open_hand(), and usage (two gloves for the
 /// same hand).
-Result<std::vector<gloves::OpenHand>> open_each(const std::vector<std::string>& specs);
+Result<std::vector<gloves::OpenHand>> open_each(const std::vector<std::string>& specs,
+                                                EventCount* event_count = nullptr);
 
 } // namespace nendo::session

@@ -34,6 +34,7 @@ std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hand
 flow::Placement placement_for(const std::vector<gloves::OpenHand>& open,
                               const std::vector<flow::HandInput>& inputs, const deform::Mesh& model,
                               const RunOptions& options) {
+  if (options.hands_only) return flow::place_without_model();
   const bool is_for_player = options.puppet || !options.puppet_file.empty();
   flow::Placement placement = sculpting::place(
       model, inputs, {options.loop.sculptor.mode, options.model_size_m, is_for_player});

@@ -47,6 +47,13 @@ edited_masks(const flow::Command& command, const std::shared_ptr<const puppet::R
   return std::make_shared<const puppet::Rig>(*std::move(after), before.starts());
 }
 
+/// Returns whether a command does something where there is no model.
+bool is_for_hands(const flow::Command& command) noexcept {
+  return std::holds_alternative<flow::Recentre>(command) ||
+         std::holds_alternative<flow::WristMove>(command) ||
+         std::holds_alternative<flow::EndRun>(command);
+}
+
 } // namespace
 
 bool LoopCommands::push(const flow::Command& command) {
@@ -107,6 +114,8 @@ void RunCommands::execute(const Asks& asks) {
 }
 
 void RunCommands::dispatch(const flow::Command& command) {
+  if (options_.hands_only && !is_for_hands(command))
+    return report_("there is no model; `nendo run` shapes one");
   std::visit([this](const auto& one) { execute(one); }, command);
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/flow/deform_loop.hpp>
@@ -22,6 +23,9 @@ struct PuppetPlace {
 };
 
 struct RunOptions {
+  /// There is no model: the hands move, and shape nothing. Nothing is written at the end.
+  bool hands_only = false;
+  std::vector<std::string> gloves;        ///< GLOVEs, each for the hand that it is; or none
   std::string left;                       ///< GLOVE; empty: not requested
   std::string right;                      ///< GLOVE; empty: not requested
   sculpting::WristOptions wrists;         ///< the trackers of the wrists

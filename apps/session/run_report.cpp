@@ -41,7 +41,8 @@ std::string progress_line(const flow::Frame& frame, double elapsed_s, double dur
     if (hand.tracked && hand.lost) line += ", wrist lost";
     if (uncalibrated[flow::Placement::index_of(side)]) line += ", uncalibrated";
   }
-  if (!frame.held) line += "  released";
+  const bool has_model = frame.shape.block_count() > 0;
+  if (!frame.held && has_model) line += "  released";
   if (frame.chain.held_pairs > 0) line += "  fingertips held apart";
   for (const std::uint32_t held : frame.parts.held)
     if (held != deform::no_index)
@@ -65,7 +66,7 @@ std::string brief_progress_line(const flow::Frame& frame, double elapsed_s,
     if (hand.tracked && hand.lost) line += ", lost";
     if (uncalibrated[slot]) without += (without.empty() ? "  " : ", ") + std::string(name_of(side));
   }
-  if (!frame.held) line += "  released";
+  if (!frame.held && frame.shape.block_count() > 0) line += "  released";
   if (frame.chain.held_pairs > 0) line += "  held apart";
   if (!without.empty()) line += without + " uncalibrated";
   return line;
@@ -263,35 +264,40 @@ void print_published(const RunOutcome& outcome) {
   }
 }
 
+void print_shape(const RunOptions& options, const RunOutcome& outcome) {
+  print_injective(options, outcome.stats);
+  print_clay(outcome.stats, outcome.units_per_metre);
+  print_row("vertices", fmt::format("{} per second ({} in the model)",
+                                    cli::thousands(static_cast<double>(outcome.vertices) *
+                                                   static_cast<double>(outcome.stats.ticks) /
+                                                   outcome.elapsed_s),
+                                    cli::thousands(outcome.vertices)));
+}
+
 void print_summary_text(const RunOptions& options, const std::vector<gloves::OpenHand>& hands,
                         const RunOutcome& outcome) {
   const auto& stats = outcome.stats;
   const auto settings =
       flow::settings_of(outcome.sculptor, options.filter, outcome.units_per_metre);
-  cli::print("\nnendo run: {:.1f} s, {}\n", outcome.elapsed_s,
-             flow::in_words(settings, outcome.units_per_metre));
+  cli::print("\nnendo {}: {:.1f} s{}\n", options.hands_only ? "serve" : "run", outcome.elapsed_s,
+             options.hands_only ? "" : ", " + flow::in_words(settings, outcome.units_per_metre));
   for (const auto& hand : hands)
     print_hand(hand, outcome);
-  print_holds(options, stats);
+  if (!options.hands_only) print_holds(options, stats);
   print_row("ticks",
             fmt::format("{} at {:g} Hz, {} overruns, {} missed", cli::thousands(stats.ticks),
                         options.loop.rate_hz, stats.overruns, stats.missed));
   print_percentiles("wake-up", stats.wake_latency);
   print_percentiles("work per tick", stats.work);
   print_percentiles("end to end", stats.end_to_end);
-  print_row("", "from the last byte of a sample to the finished mesh");
+  print_row("", options.hands_only ? "from the last byte of a sample to the hand's joints"
+                                   : "from the last byte of a sample to the finished mesh");
   print_pose_latencies(stats);
   print_filter(options.filter, stats);
-  print_injective(options, stats);
-  print_clay(stats, outcome.units_per_metre);
-  print_row("vertices",
-            fmt::format("{} per second ({} in the model)",
-                        cli::thousands(static_cast<double>(outcome.vertices) *
-                                       static_cast<double>(stats.ticks) / outcome.elapsed_s),
-                        cli::thousands(outcome.vertices)));
+  if (!options.hands_only) print_shape(options, outcome);
   print_recordings(outcome.recordings);
   print_published(outcome);
-  print_row("result", outcome.result);
+  if (!options.hands_only) print_row("result", outcome.result);
   if (!options.picture.empty()) print_row("picture", options.picture);
   std::fflush(stdout);
 }

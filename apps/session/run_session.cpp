@@ -151,7 +151,7 @@ public:
   }
 
   Result<RunOutcome> run() {
-    options_.loop.input_log = recorder_.first_log();
+    if (auto* const log = recorder_.first_log()) options_.loop.input_log = log;
     auto placed = place_loop(options_, hands_, model_);
     if (!placed) return placed.error();
     placed_ = *std::move(placed);
@@ -168,9 +168,10 @@ public:
     for (auto& [side, feedback] : feedback_)
       feedback.put_out();
     gloves::stop(hands_);
-    if (const auto written = write_shape(options_.out, model_, options_.reading.up_axis());
-        !written)
-      return written.error();
+    if (!options_.hands_only)
+      if (const auto written = write_shape(options_.out, model_, options_.reading.up_axis());
+          !written)
+        return written.error();
     if (const auto drawn = picture.write(model_); !drawn) return drawn.error();
     for (Observer* observer : observers_)
       if (const auto ended = observer->end(); !ended) return ended.error();

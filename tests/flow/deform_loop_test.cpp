@@ -378,6 +378,29 @@ TEST_SUITE("deform_loop") {
       CHECK(shown.fingertip_positions().isApprox(expected.fingertip_positions(), 1e-12));
     }
   }
+
+  TEST_CASE("without a model hands move, whatever is asked") {
+    LoopUnderTest test(Mode::type1);
+    test.loop = std::make_unique<flow::DeformLoop>(deform::Mesh(), flow::place_without_model(),
+                                                   test.inputs, test.options);
+    REQUIRE(is_solved(test.loop->grab_status()));
+    std::mt19937 random(9);
+    Eigen::Vector3d before = Eigen::Vector3d::Zero();
+    for (std::uint64_t tick = 0; tick < 300; ++tick) {
+      test.bend(static_cast<int>(tick % 60), HostClock::now());
+      test.commands.try_push(flow::requests[random() % flow::requests.size()]);
+      const flow::Frame& frame = test.frame_after_tick(tick);
+      CHECK(frame.shape.block_count() == 0);
+      REQUIRE(frame.hands[0].present);
+      const Eigen::Vector3d tip = frame.hands[1].pose[hand::Joint::index_tip].translation();
+      CHECK(tip.allFinite());
+      CHECK(tip != before);
+      CHECK(frame.hands[1].T_stage_wrist.translation().x() >
+            frame.hands[0].T_stage_wrist.translation().x() + 0.2);
+      before = tip;
+    }
+    CHECK(test.loop->stats().failed == 0);
+  }
 }
 
 } // namespace deform_loop_test

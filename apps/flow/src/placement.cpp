@@ -210,6 +210,13 @@ Placement place_player(const deform::Mesh& model, double model_size_m) {
   return placement;
 }
 
+Placement place_without_model() noexcept {
+  Placement placement;
+  for (const Side side : {Side::left, Side::right})
+    placement.T_stage_wrist[Placement::index_of(side)].translation().x() = 0.15 * outwards_of(side);
+  return placement;
+}
+
 Table table_under(const deform::Mesh& model, double units_per_metre) noexcept {
   constexpr double min_side_m = 0.5;
   Table table{Eigen::Vector3d::Zero(), min_side_m * units_per_metre};

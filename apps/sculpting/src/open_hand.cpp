@@ -146,7 +146,7 @@ Result<void> open_wrists(std::span<OpenHand> hands, const WristOptions& options,
     if (!tracking) return tracking.error();
     tracking->movement_scale = options.movement_scale;
     moved[at]->wrist =
-        OpenWrist{std::make_unique<PoseRing>(1024), (*stations)[at], *std::move(tracking)};
+        OpenWrist{std::make_unique<PoseRing>(1024, options.event_count), (*stations)[at], *std::move(tracking)};
   }
   return {};
 }

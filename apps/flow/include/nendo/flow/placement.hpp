@@ -49,6 +49,10 @@ NENDO_API Placement place_hands(const deform::Mesh& model,
 /// backs towards the viewer, fingers up and slightly forward.
 NENDO_API Placement place_player(const deform::Mesh& model, double model_size_m = 0.46);
 
+/// Returns where hands are that have no model between them: beside each other, 30 cm apart, palms
+/// down and fingers forward. The stage's unit is the metre.
+NENDO_API Placement place_without_model() noexcept;
+
 /// Returns a table at the height of the model's lowest vertex, much wider than the model.
 NENDO_API Table table_under(const deform::Mesh& model, double units_per_metre) noexcept;
 

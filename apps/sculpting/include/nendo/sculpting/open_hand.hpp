@@ -56,6 +56,7 @@ NENDO_API Result<std::vector<OpenHand>> open_found(std::span<const Side> sides,
 struct WristOptions {
   std::array<std::string, 2> trackers; ///< TRACKER by the side of the hand; empty: none
   double movement_scale = 1.0;         ///< hand::TrackingOptions::movement_scale
+  EventCount* event_count = nullptr;   ///< each pose notifies it; null: nothing
 };
 
 /// Opens the trackers of `options`, with the drivers of the library and `more`, for those of
