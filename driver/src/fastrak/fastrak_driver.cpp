@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <string>
 #include <utility>
 
@@ -10,22 +8,18 @@
 #include "fastrak/fastrak_identity.hpp"
 #include "fastrak/fastrak_parser.hpp"
 #include "fastrak/fastrak_protocol.hpp"
-#include "stream/line_times.hpp"
+#include "polhemus/pose_stream.hpp"
 #include "stream/stream_tracker.hpp"
 #include "transport/open_transport.hpp"
 
 namespace nendo::driver::fastrak {
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr auto stop_quiet = 50ms;
-constexpr auto max_stop = 250ms;
-
-class FastrakProtocol final : public TrackerProtocol {
+class FastrakProtocol final : public polhemus::PoseStream<Parser> {
 public:
   explicit FastrakProtocol(Options options)
-      : options_(std::move(options)), baud_(options_.baud.value_or(bauds.front())) {
+      : PoseStream(std::move(options), bauds.front(),
+                   {record_bytes, records_per_second, solution_delay}) {
     parser_.expect(options_.stations);
   }
 
@@ -36,57 +30,23 @@ public:
     parser_.count_discarded(dialogue.bytes_received());
     if (!identity) return identity.error();
     baud_ = identity->baud;
-    is_fastrak_ = !identity->status.is_intersense;
+    facts_.records_per_second = identity->status.is_intersense ? 0.0 : records_per_second;
     source_ = source;
     if (reason == IdentifyReason::opening && !identity->refusals.empty())
       spdlog::warn("device: {}: the tracker refuses {}", source, identity->refusals);
     return describe(*identity);
   }
 
-  Result<void> start_stream(Transport& transport, const std::string& source,
-                            const ReplyDeadline& limit) override {
-    TextDialogue dialogue(transport, limit);
-    dialogue.send(binary_command);
-    parser_.count_discarded(drop_waiting(transport));
-    parser_.reset();
-    times_ = LineTimes(baud_, record_bytes, is_fastrak_ ? records_per_second : 0.0);
-    dialogue.send(stream_command);
-    return dialogue.is_gone() ? Result<void>(went_away(source)) : Result<void>();
-  }
-
-  void end_stream(Transport& transport, const ReplyDeadline& limit) noexcept override {
-    TextDialogue dialogue(transport, limit);
-    dialogue.send(stop_command);
-    dialogue.fall_quiet(stop_quiet, max_stop);
-    dialogue.send(text_command);
-    parser_.count_discarded(dialogue.bytes_received());
-  }
-
-  void push(std::span<const std::byte> chunk, HostTime arrival, Sink& sink) noexcept override {
-    const std::uint64_t end = parser_.counters().bytes + chunk.size();
-    const auto take = [&](const Record& record) {
-      note_error(record);
-      PoseSample sample;
-      sample.station = record.station;
-      sample.position_m = record.position_m;
-      sample.turn_xyzw = record.turn_xyzw;
-      sample.error = record.error;
-      const HostTime begin = times_.record_begin(arrival, end - parser_.counters().bytes);
-      sample.measured = times_.in_order(begin - solution_delay);
-      sink.deliver(sample);
-    };
-    parser_.push(chunk, FindingSink{take, [&](BadRecord) { sink.reject(); }});
-  }
-
-  const StreamCounters& counters() const noexcept override { return parser_.counters(); }
-
 private:
+  std::string_view meaning_of(char letter) const noexcept override {
+    return meaning_of_error(letter);
+  }
   TrackerInfo describe(const Identity& identity) const {
     const Status& status = identity.status;
     TrackerInfo info;
     info.model = (status.is_intersense ? "InterSense, as " : "Polhemus ") + std::string("FASTRAK");
     info.stations = options_.stations;
-    if (is_fastrak_) info.rate_hz = records_per_second;
+    info.rate_hz = facts_.records_per_second;
     info.stage_from_tracker_xyzw = stage_from_z_down_xyzw;
     info.is_filtered = options_.is_filtered;
     info.facts = {{"firmware", status.firmware},
@@ -97,28 +57,6 @@ private:
                   {"filter", options_.is_filtered ? "on" : "off"}};
     if (!identity.refusals.empty()) info.facts.push_back({"refused_commands", identity.refusals});
     return info;
-  }
-
-  /// Each letter of a station once: it stays in all records after.
-  void note_error(const Record& record) noexcept {
-    if (record.error == std::exchange(errors_[record.station], record.error)) return;
-    if (record.error == ' ') return;
-    spdlog::warn("device: {}: station {} reports the error {}: {}", source_, record.station,
-                 record.error, meaning_of_error(record.error));
-  }
-
-  const Options options_;
-  std::string source_;
-  int baud_; ///< the one that was answered, or the first to try
-  bool is_fastrak_ = true;
-  Parser parser_;
-  LineTimes times_;
-  std::array<char, max_stations + 1> errors_ = all_blank(); ///< the last letter of each station
-
-  static std::array<char, max_stations + 1> all_blank() noexcept {
-    std::array<char, max_stations + 1> blanks;
-    blanks.fill(' ');
-    return blanks;
   }
 };
 

@@ -4,64 +4,17 @@
 #include <chrono>
 #include <string_view>
 
+#include "polhemus/polhemus_greeting.hpp"
+
 namespace nendo::driver::fastrak {
 namespace {
 
 using namespace std::chrono_literals;
+using polhemus::not_plugged_in;
+using polhemus::send_slowly;
+using polhemus::station_command;
 
-constexpr auto quiet_time = 60ms; ///< longer than a record of text at 9600 baud, 49 ms
-constexpr auto max_drain = 250ms;
-// The answer's 55 bytes take 57 ms at 9600 baud. Five rates without an answer, twice, are 3.1 s,
-// less than open_budget; twice at one rate are 2.1 s.
-constexpr auto answer_time = 250ms;
-constexpr auto single_answer_time = 1000ms;
 constexpr auto setup_time = 400ms;
-constexpr auto pace = 10ms; ///< after each command: no source says how many fit into its buffer
-
-/// Who answered, and at which rate.
-struct Greeting {
-  Status status;
-  int baud = 0;
-};
-
-std::optional<Greeting> greet(Transport& transport, TextDialogue& dialogue, const Options& options,
-                              int first_baud) {
-  std::optional<Status> status;
-  const auto is_answered = [&](const std::string& heard) {
-    status = find_status(heard);
-    return status.has_value();
-  };
-  const std::vector<int> order = polhemus::bauds_to_try(options, first_baud, bauds);
-  // The CR is for a tracker that waits for the rest of a command.
-  for (const std::string& begin : {std::string(stop_command), "\r" + std::string(stop_command)}) {
-    for (const int baud : order) {
-      if (!transport.set_baud(baud) && baud != order.front()) break;
-      dialogue.forget();
-      dialogue.send(begin);
-      dialogue.fall_quiet(quiet_time, max_drain);
-      dialogue.send(status_command);
-      if (dialogue.hear(options.baud ? single_answer_time : answer_time, is_answered))
-        return Greeting{*std::move(status), baud};
-      if (dialogue.is_over()) return std::nullopt;
-    }
-  }
-  return std::nullopt;
-}
-
-Error stranger(const std::string& source, const Options& options, bool is_silent) {
-  const auto tried = polhemus::bauds_to_try(options, bauds.front(), bauds);
-  return {Errc::no_device,
-          source +
-              (is_silent ? ": nothing comes from it" : ": what is there is no FASTRAK, or busy") +
-              "; is the tracker switched on, is this its port, and is its line set to 8 bits and a "
-              "baud rate of " +
-              polhemus::listed(tried) +
-              "? If so, restart it: switch it off and on, or send it ^Y, and wait 10 s"};
-}
-
-std::string station_command(char command, std::uint16_t station, std::string_view parameters) {
-  return std::string{command, station_digit(station)}.append(parameters);
-}
 
 class Setup {
 public:
@@ -96,12 +49,13 @@ public:
       command(station_command('H', station,
                               polhemus::hemisphere_parameters(options_.hemisphere) + "\r"));
     }
-    command(centimetres_command);
+    command(polhemus::centimetres_command);
     command(no_stylus_command);
-    for (const std::string_view filter : options_.is_filtered ? filters_on : filters_off)
+    for (const std::string_view filter :
+         options_.is_filtered ? polhemus::filters_on : polhemus::filters_off)
       command(filter);
     const auto is_answered = [](const std::string& heard) { return bool(find_status(heard)); };
-    dialogue_.ask(status_command, setup_time, is_answered);
+    dialogue_.ask(polhemus::status_command, setup_time, is_answered);
     const auto status = find_status(dialogue_.heard());
     if (!status) return unanswered("S");
     if (!status->is_metric())
@@ -114,10 +68,7 @@ public:
   }
 
 private:
-  void command(std::string_view text) {
-    dialogue_.send(text);
-    dialogue_.hear(pace);
-  }
+  void command(std::string_view text) { send_slowly(dialogue_, text); }
   Result<void> choose_stations(const std::string& digits) {
     std::string& plugged_in = identity_.plugged_in;
     const auto is_on = [&](std::uint16_t station) {
@@ -126,7 +77,7 @@ private:
     for (std::uint16_t station = 1; station <= digits.size(); ++station)
       if (is_on(station)) plugged_in += (plugged_in.empty() ? "" : ", ") + std::to_string(station);
     for (const std::uint16_t station : options_.stations)
-      if (!is_on(station)) return not_plugged_in(station);
+      if (!is_on(station)) return not_plugged_in(source_, station, plugged_in);
     const auto& wanted = options_.stations;
     for (std::uint16_t station = 1; station <= digits.size(); ++station)
       if (is_on(station) && std::find(wanted.begin(), wanted.end(), station) == wanted.end())
@@ -136,12 +87,6 @@ private:
   Error no_such_station(std::uint16_t station, std::uint16_t last) const {
     return {Errc::usage, source_ + ": there is no station " + std::to_string(station) +
                              "; stations are 1 to " + std::to_string(last)};
-  }
-  Error not_plugged_in(std::uint16_t station) const {
-    const std::string others =
-        identity_.plugged_in.empty() ? "no station is" : "plugged in: " + identity_.plugged_in;
-    return {Errc::no_device, source_ + ": no receiver is plugged in at station " +
-                                 std::to_string(station) + "; " + others};
   }
   Error unanswered(std::string_view query) const {
     if (dialogue_.is_gone()) return went_away(source_);
@@ -166,12 +111,18 @@ std::optional<std::string> too_slow(int baud) {
 Result<Identity> identify(Transport& transport, TextDialogue& dialogue, const std::string& source,
                           const Options& options, int first_baud) {
   const std::uint64_t before = dialogue.bytes_received();
-  auto greeting = greet(transport, dialogue, options, first_baud);
+  const auto order = polhemus::bauds_to_try(options, first_baud, bauds);
+  std::optional<Status> status;
+  const auto baud = polhemus::greet(transport, dialogue, order, [&](const std::string& heard) {
+    status = find_status(heard);
+    return status.has_value();
+  });
   if (dialogue.is_gone()) return went_away(source);
-  if (!greeting) return stranger(source, options, dialogue.bytes_received() == before);
+  if (!baud)
+    return polhemus::stranger(source, "FASTRAK", order, dialogue.bytes_received() == before);
   Identity identity;
-  identity.baud = greeting->baud;
-  identity.status = std::move(greeting->status);
+  identity.baud = *baud;
+  identity.status = *std::move(status);
   if (const auto why = too_slow(identity.baud)) return Error{Errc::no_device, source + ": " + *why};
   Setup setup(dialogue, source, options, identity);
   if (auto chosen = setup.choose_stations(); !chosen) return chosen.error();

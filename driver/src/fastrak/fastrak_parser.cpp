@@ -20,11 +20,6 @@ std::uint16_t station_of(std::byte byte) noexcept {
   return 0;
 }
 
-bool is_error(std::byte byte) noexcept {
-  const auto letter = std::to_integer<char>(byte);
-  return letter == ' ' || (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z');
-}
-
 } // namespace
 
 std::optional<Record> decode_record(std::span<const std::byte, record_bytes> frame) noexcept {
@@ -33,7 +28,7 @@ std::optional<Record> decode_record(std::span<const std::byte, record_bytes> fra
   if (reader.u8() != static_cast<std::uint8_t>(record_begin)) return std::nullopt;
   record.station = station_of(static_cast<std::byte>(reader.u8()));
   record.error = static_cast<char>(reader.u8());
-  if (record.station == 0 || !is_error(frame[2])) return std::nullopt;
+  if (record.station == 0 || !polhemus::is_error(record.error)) return std::nullopt;
   bool good = polhemus::read_pose(reader, record.position_m, record.turn_xyzw);
   good = good && reader.u8() == '\r' && reader.u8() == '\n';
   return good ? std::optional(record) : std::nullopt;
@@ -77,7 +72,7 @@ bool Parser::fits(std::size_t at) const noexcept {
   case 1:
     return (stations_ & ~1U & (1U << station_of(frame_[at]))) != 0;
   case 2:
-    return is_error(frame_[at]);
+    return polhemus::is_error(std::to_integer<char>(frame_[at]));
   case record_bytes - 2:
     return frame_[at] == carriage_return;
   case record_bytes - 1:

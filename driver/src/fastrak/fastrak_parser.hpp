@@ -14,16 +14,12 @@
 #include <span>
 
 #include "fastrak/fastrak_protocol.hpp"
+#include "polhemus/pose_record.hpp"
 #include "stream/stream_parser.hpp"
 
 namespace nendo::driver::fastrak {
 
-struct Record {
-  std::uint16_t station = 0;
-  char error = ' ';
-  std::array<double, 3> position_m{};
-  std::array<double, 4> turn_xyzw{};
-};
+using Record = polhemus::PoseRecord;
 
 /// Decodes a whole record. Returns nothing if the begin, the station, the error letter or the end
 /// is none, or the numbers are no pose in reach.

@@ -25,30 +25,15 @@ namespace nendo::driver::fastrak {
 /// before the slowest.
 inline constexpr std::array bauds{115'200, 38'400, 19'200, 9'600, 57'600};
 
-// Commands of one letter [M 34-83].
-inline constexpr std::string_view stop_command = "c";   ///< ends the stream [M 41]
-inline constexpr std::string_view stream_command = "C"; ///< [M 41]
-inline constexpr std::string_view text_command = "F";   ///< records as text, the default [M 47]
-inline constexpr std::string_view binary_command = "f"; ///< [M 47]
-inline constexpr std::string_view centimetres_command = "u"; ///< [S]
-inline constexpr std::string_view status_command = "S";      ///< [M 68]
+// The others are in polhemus_greeting.hpp.
 /// Which stations are on [M 54].
 inline constexpr std::string_view stations_query = "l1\r";
 /// A stylus makes no output of its own; its button would end the stream [M 90, V].
 inline constexpr std::string_view no_stylus_command = "e1,0\r";
 
-// The filters of position and attitude [M appendix E, V]. That these numbers switch them off is
-// stated for LIBERTY [V].
-inline constexpr std::array<std::string_view, 2> filters_off{"x0,1,0,0\r", "v0,1,0,0\r"};
-inline constexpr std::array<std::string_view, 2> filters_on{"x0.2,0.2,0.8,0.8\r",
-                                                            "v0.2,0.2,0.8,0.8\r"};
-
 /// FASTRAK has 4 stations; InterSense up to 12, as hexadecimal digits [I].
 inline constexpr std::uint16_t fastrak_stations = 4;
 inline constexpr std::uint16_t max_stations = 12;
-constexpr char station_digit(std::uint16_t station) noexcept {
-  return "0123456789ABC"[station];
-}
 
 /// Position and quaternion, closed by CR LF [M 57].
 inline constexpr std::string_view record_items = ",2,11,1\r";

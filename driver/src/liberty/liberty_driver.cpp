@@ -13,6 +13,7 @@
 #include "drivers.hpp"
 #include "liberty/liberty_parser.hpp"
 #include "liberty/liberty_protocol.hpp"
+#include "polhemus/polhemus_greeting.hpp"
 #include "polhemus/polhemus_options.hpp"
 #include "stream/device_clock.hpp"
 #include "stream/line_times.hpp"
@@ -30,7 +31,6 @@ constexpr auto quiet_time = 60ms;
 constexpr auto max_drain = 250ms;
 constexpr auto answer_time = 350ms; ///< the longest answer takes 257 ms at 9600 baud
 constexpr auto end_of_answer = 80ms;
-constexpr auto pace = 10ms; ///< after each command
 
 /// What the tracker answered.
 struct Identity {
@@ -96,10 +96,7 @@ public:
   }
 
 private:
-  void command(std::string_view text) {
-    dialogue_.send(text);
-    dialogue_.hear(pace);
-  }
+  void command(std::string_view text) { polhemus::send_slowly(dialogue_, text); }
 
   void greet(const std::vector<int>& order) {
     for (int tries = 0; tries < 2; ++tries) {
@@ -111,8 +108,7 @@ private:
         const bool is_quiet = dialogue_.fall_quiet(quiet_time, max_drain);
         if (dialogue_.is_over()) return;
         if (!is_quiet) continue; // a tracker would be
-        dialogue_.send(text_command);
-        dialogue_.hear(pace);
+        command(text_command);
         dialogue_.forget();
         dialogue_.send(who_query);
         if (dialogue_.hear(answer_time, [](const std::string&) { return true; })) hear_to_end();
@@ -146,10 +142,7 @@ private:
     for (const std::uint16_t station : options_.stations) {
       const auto& there = identity_.stations;
       if (std::find(there.begin(), there.end(), station) != there.end()) continue;
-      return Error{
-          Errc::no_device,
-          source_ + ": no receiver is plugged in at station " + std::to_string(station) +
-              (there.empty() ? "; no station is" : "; plugged in: " + polhemus::listed(there))};
+      return polhemus::not_plugged_in(source_, station, polhemus::listed(there));
     }
     return {};
   }

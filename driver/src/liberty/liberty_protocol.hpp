@@ -44,9 +44,6 @@ inline constexpr std::string_view full_records = "O*,8,9,11,3,7,1\r";
 inline constexpr std::string_view short_records = "O*,8,9,3,7,1\r";
 inline constexpr std::size_t full_bytes = 50;
 inline constexpr std::size_t short_bytes = 46;
-inline constexpr double max_coordinate_cm =
-    500.0;                                      ///< further away than any transmitter reaches [?]
-inline constexpr double max_norm_error = 0.002; ///< how far a quaternion may be off [?]
 /// PoseSample::error of a record without an error letter that reports distortion by metal [?].
 inline constexpr char distorted = '!';
 

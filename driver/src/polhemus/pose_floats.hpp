@@ -8,11 +8,12 @@
 
 #include <nendo/base/byte_reader.hpp>
 
+#include "polhemus/pose_record.hpp"
+
 namespace nendo::driver::polhemus {
 
 /// Further away than any transmitter reaches: that of long range, 4.6 m. Chosen.
 inline constexpr double max_coordinate_cm = 500.0;
-inline constexpr double max_norm_error = 0.002; ///< how far a quaternion may be off. Chosen.
 
 /// Reads x, y, z in centimetres and a quaternion with its scalar first, as 32-bit floats. Returns
 /// false if they are no pose in reach.
