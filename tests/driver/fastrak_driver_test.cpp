@@ -1,15 +1,12 @@
 #include <nendo/driver/open_tracker.hpp>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
 
+#include "support/numbered_poses.hpp"
 #include "support/tracker_laws.hpp"
 
 namespace fastrak_driver_test {
@@ -30,94 +27,20 @@ TrackerKind fastrak() {
 
 std::vector<std::string> specs_of(const std::string& path, const std::vector<int>& stations,
                                   const std::string& more = {}) {
-  std::vector<std::string> specs;
-  for (const int station : stations)
-    specs.push_back("fastrak:" + path + "?station=" + std::to_string(station) + more);
-  return specs;
+  return station_specs("fastrak:" + path, stations, more);
 }
 
-/// Returns the number of a record of the Python device, or -1 if it is not the one that was sent:
-/// x is 20 cm and 0.1 mm per record, the turn about z a milliradian per record.
-int number_of(const PoseSample& sample) {
-  const double number = (sample.position_m[0] - 0.2) / 0.0001;
-  const double half_rad = std::round(number) / 2000.0;
-  const bool good = std::abs(number - std::round(number)) < 0.01 &&
-                    std::abs(sample.position_m[1] - 0.1 * sample.station) < 1e-6 &&
-                    std::abs(sample.position_m[2] + 0.3) < 1e-6 &&
-                    std::abs(sample.turn_xyzw[2] - std::sin(half_rad)) < 1e-6 &&
-                    std::abs(sample.turn_xyzw[3] - std::cos(half_rad)) < 1e-6 &&
-                    sample.turn_xyzw[0] == 0.0 && sample.turn_xyzw[1] == 0.0;
-  return good ? static_cast<int>(std::round(number)) : -1;
-}
+constexpr SharedRate shared_rate{120.0, 33, {}};
 
-/// What arrived at some stations.
-struct Heard {
-  std::size_t wrong = 0;
-  std::size_t lost = 0;
-  std::size_t count = 0;
-  double rate_hz = 0.0; ///< the worst station's
-};
-
-Heard look_at(std::vector<std::unique_ptr<PoseRing>>& rings, double nominal_hz) {
-  Heard heard;
-  heard.rate_hz = nominal_hz;
-  for (const auto& ring : rings) {
-    int last = -1;
-    std::vector<HostTime> arrivals;
-    ring->drain([&](const PoseSample& sample) {
-      const int number = number_of(sample);
-      if (number < 0) ++heard.wrong;
-      if (last >= 0) heard.lost += static_cast<std::size_t>((number - last + 999) % 1000);
-      last = number;
-      arrivals.push_back(sample.arrival);
-    });
-    heard.count += arrivals.size();
-    REQUIRE(arrivals.size() > 10);
-    const double seconds = to_seconds(arrivals.back() - arrivals.front());
-    const double rate_hz = static_cast<double>(arrivals.size() - 1) / seconds;
-    if (std::abs(rate_hz - nominal_hz) > std::abs(heard.rate_hz - nominal_hz))
-      heard.rate_hz = rate_hz;
-  }
-  return heard;
-}
-
-/// Streams these stations for `seconds`.
-Heard stream(const std::vector<std::string>& specs, std::chrono::seconds seconds) {
-  std::vector<std::unique_ptr<PoseRing>> rings;
-  std::vector<PoseRing*> pointers;
-  for (std::size_t k = 0; k < specs.size(); ++k)
-    pointers.push_back(rings.emplace_back(std::make_unique<PoseRing>(1U << 12U)).get());
-  const auto stations = required(open_trackers(specs));
-  test::require_ok(start_trackers(stations, pointers));
-  std::this_thread::sleep_for(seconds);
-  stations.front().tracker->stop();
-  const StreamStats stats = stations.front().tracker->stats();
-  const Heard heard = look_at(rings, 120.0 / static_cast<double>(specs.size()));
-  CHECK(stats.bad_records == 0);
-  CHECK(stats.ring_refused == 0);
-  CHECK(stats.records == heard.count);
-  check_tracker_conservation(stats, 33);
-  return heard;
+NumberedPoses stream(const std::vector<std::string>& specs, std::chrono::seconds seconds) {
+  return stream_numbered(specs, seconds, shared_rate);
 }
 
 } // namespace
 
 TEST_SUITE("fastrak_driver") {
   TEST_CASE("one to four FASTRAK stations share 120 poses per second, and none is lost or wrong") {
-    for (const std::vector<int>& stations :
-         {std::vector{1}, std::vector{2, 1}, std::vector{1, 3, 4}, std::vector{1, 2, 3, 4}}) {
-      CAPTURE(stations.size());
-      const double nominal_hz = 120.0 / static_cast<double>(stations.size());
-      const auto port = plug();
-      Heard heard;
-      for (int tries = 0; tries < 3; ++tries) { // the machine may be busy
-        heard = stream(specs_of(port->path(), stations), 4s);
-        if (std::abs(heard.rate_hz / nominal_hz - 1.0) <= 0.01) break;
-      }
-      CHECK(heard.rate_hz == doctest::Approx(nominal_hz).epsilon(0.01));
-      CHECK(heard.wrong == 0);
-      CHECK(heard.lost == 0);
-    }
+    stations_share_the_rate(fastrak(), shared_rate, {{1}, {2, 1}, {1, 3, 4}, {1, 2, 3, 4}});
   }
 
   TEST_CASE("a FASTRAK reports who it is, and its stations are switched on, the others off") {
@@ -254,25 +177,8 @@ TEST_SUITE("fastrak_driver") {
   }
 
   TEST_CASE("the time of a pose excludes line, solution and the records that came with it") {
-    const auto port = plug({"--burst", "4"});
-    OneStation hand("fastrak:" + port->path());
-    test::require_ok(hand.start());
-    REQUIRE(eventually([&] { return hand.ring.size() >= 40; }));
-    hand.tracker().stop();
-    // 33 bytes of 10 bits at 115200 baud are 2.865 ms, the solution takes 3.75 ms; a cycle 8.333
-    // ms.
-    std::vector<PoseSample> samples;
-    hand.ring.drain([&](const PoseSample& sample) { samples.push_back(sample); });
-    int pairs = 0;
-    for (std::size_t k = 1; k < samples.size(); ++k) {
-      const bool is_last = k + 1 == samples.size() || samples[k + 1].arrival != samples[k].arrival;
-      const double delay_ms = to_milliseconds(samples[k].arrival - samples[k].measured);
-      if (is_last) CHECK(delay_ms == doctest::Approx(6.615).epsilon(0.001));
-      if (samples[k].arrival != samples[k - 1].arrival) continue;
-      ++pairs;
-      CHECK(to_milliseconds(samples[k].measured - samples[k - 1].measured) <= 8.334);
-    }
-    CHECK(pairs > 20);
+    // 33 bytes of 10 bits at 115200 baud are 2.865 ms, the solution takes 3.75 ms.
+    times_exclude_what_delays(fastrak(), {6.615, 8.333});
   }
 
   TEST_CASE("a FASTRAK's options that are none are usage errors that name what there is") {
