@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <random>
@@ -225,14 +224,7 @@ TEST_SUITE("fastrak_parser") {
   }
 
   TEST_CASE("a file of FASTRAK records yields what was worked out for it by hand") {
-    test::reads_as_expected<Record>(Parser(), {"fastrak_stream.bin", 33}, [](const Record& record) {
-      std::array<char, 120> line{};
-      const auto& [x, y, z] = record.position_m;
-      const auto& [qx, qy, qz, qw] = record.turn_xyzw;
-      std::snprintf(line.data(), line.size(), "%d %c %.4f %.4f %.4f  %.4f %.4f %.4f %.4f",
-                    record.station, record.error, x, y, z, qx, qy, qz, qw);
-      return std::string(line.data());
-    });
+    test::reads_as_expected<Record>(Parser(), {"fastrak_stream.bin", 33}, test::pose_line<Record>);
   }
 
   TEST_CASE("a status is found among other bytes, and InterSense's is one byte shorter") {

@@ -164,6 +164,14 @@ TEST_SUITE("liberty_parser") {
     }
     CHECK(records > 400 * 20);
   }
+
+  TEST_CASE("a file of LIBERTY's records yields what was worked out for it by hand") {
+    test::reads_as_expected<Record>(Parser(), {"liberty_stream.bin", 50}, [](const Record& record) {
+      return test::pose_line(record) + "  " + std::string(models[record.model].name) + " " +
+             std::to_string(record.time_ms) + " " + std::to_string(record.frame) + " " +
+             std::to_string(record.distortion);
+    });
+  }
 }
 
 } // namespace liberty_parser_test

@@ -2,6 +2,8 @@
 // Files of tests/driver/captures/, with the bytes that a device sends and what is to be read from
 // them.
 
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -37,6 +39,17 @@ void reads_as_expected(Parser parser, const Capture& capture, const LineOf& line
   check_accounted(parser, input.size(), capture.longest_record);
   CHECK(lines ==
         read_capture(std::filesystem::path(capture.stream).replace_extension(".expected")));
+}
+
+/// Returns the line of a tracker's record: station, error letter, position and quaternion.
+template <class Record>
+std::string pose_line(const Record& record) {
+  std::array<char, 120> line{};
+  const auto& [x, y, z] = record.position_m;
+  const auto& [qx, qy, qz, qw] = record.turn_xyzw;
+  std::snprintf(line.data(), line.size(), "%d %c %.4f %.4f %.4f  %.4f %.4f %.4f %.4f",
+                record.station, record.error, x, y, z, qx, qy, qz, qw);
+  return line.data();
 }
 
 /// Checks each line `bytes in hexadecimal => text` of a file of reports, of which there are so many
