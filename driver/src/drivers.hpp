@@ -140,6 +140,15 @@ Result<std::unique_ptr<Tracker>> open_liberty(const DeviceSpec& spec,
 
 } // namespace liberty
 
+namespace isotrak {
+
+/// Opens `isotrak:PATH[?station=N&baud=N&hemisphere=x,y,z&filter=on|off]`, a Polhemus ISOTRAK II at
+/// a serial port, which has the stations 1 and 2. Otherwise as open_fastrak().
+Result<std::unique_ptr<Tracker>> open_isotrak(const DeviceSpec& spec,
+                                              std::span<const std::uint16_t> stations);
+
+} // namespace isotrak
+
 namespace flock {
 
 /// Opens `flock:PATH[?station=N&baud=N&hemisphere=NAME]`, an Ascension Flock of Birds or miniBIRD

@@ -52,6 +52,8 @@ constexpr std::array own_drivers{
     TrackerDriver{"liberty", "liberty:PATH[?station=N&baud=N&hemisphere=X,Y,Z&filter=on|off]",
                   "Polhemus LIBERTY, PATRIOT, Latus at a serial port", take_numbered_station,
                   liberty::open_liberty},
+    TrackerDriver{"isotrak", "isotrak:PATH[?station=N&baud=N&hemisphere=X,Y,Z&filter=on|off]",
+                  "Polhemus ISOTRAK II", take_numbered_station, isotrak::open_isotrak},
     TrackerDriver{"flock",
                   "flock:PATH[?station=N&baud=N&hemisphere=forward|aft|right|left|lower|upper]",
                   "Ascension Flock of Birds, miniBIRD", take_numbered_station, flock::open_flock},
