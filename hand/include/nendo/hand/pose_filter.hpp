@@ -13,16 +13,17 @@ namespace nendo::hand {
 
 /// The cutoff of the position is min_cutoff_hz + beta_hz_per_m_s |velocity|, and the turn's has a
 /// beta of its own. The defaults were chosen with a FASTRAK's noise, 0.8 mm and 0.15 degrees (root
-/// mean square of an axis), at 60 and 120 Hz: at rest, less than a third of it remains, and
-/// movements of 5 to 40 cm that reach 0.5 m/s are delayed by 17 to 20 ms. The derivative's cutoff
-/// is higher than the authors' 1 Hz, with which a stroke of 0.2 s would be over before its speed
-/// were known: such strokes were delayed by 35 ms.
+/// mean square of an axis), at 30 to 240 Hz: at rest, 0.24 mm of it remain at 30 Hz and 0.10 mm at
+/// 240 Hz, and movements of 5 to 40 cm that reach 0.5 m/s are delayed by 12 to 20 ms. A constant
+/// cutoff with 0.25 mm at 30 Hz would delay them by 154 ms. The speed of noise alone raises the
+/// cutoff at rest, the more the higher the derivative's cutoff is. With the authors' 1 Hz for that,
+/// the filter follows noise for longer after each stroke.
 struct PoseFilterOptions {
   FilterKind kind = FilterKind::off;
-  double min_cutoff_hz = 1.0;
-  double beta_hz_per_m_s = 22.0;
-  double beta_hz_per_rad_s = 4.0; ///< at a fingertip, 0.19 m from the wrist, as beta_hz_per_m_s
-  double derivative_cutoff_hz = 5.0;
+  double min_cutoff_hz = 0.4;
+  double beta_hz_per_m_s = 35.0;
+  double beta_hz_per_rad_s = 6.5; ///< at a fingertip, 0.19 m from the wrist, as beta_hz_per_m_s
+  double derivative_cutoff_hz = 2.0;
 
   friend bool operator==(const PoseFilterOptions&, const PoseFilterOptions&) = default;
 };
