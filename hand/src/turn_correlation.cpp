@@ -124,7 +124,9 @@ struct Likelihoods {
   /// Returns the slope per step of the grid.
   double slope(int shift) const { return (at(shift + reach) - at(shift - reach)) / (2.0 * reach); }
 
-  static constexpr int reach = 5;
+  /// Steps of the grid to either side that show the peak's position. Within some milliseconds of
+  /// the peak, the product of both devices' noise moves it by far more than the noise of one does.
+  static constexpr int reach = 40;
 
 private:
   double vertical_weight() const { return 1.0 / (tilt_rad * tilt_rad); }
@@ -163,9 +165,11 @@ TurnMatch match_of(const std::vector<Matrix3d>& correlations, double duration_s)
   match.heading_rad = std::atan2(turn(0, 2), turn(2, 2));
   match.late_s = grid_s * shift;
   match.late_deviation_s = max_late_s;
-  if (std::abs(shift) > max_shift - Likelihoods::reach) return match; // the peak may lie beyond
-  if (const double bend = best.bend(shift); bend < 0.0) {
-    match.late_s -= grid_s * best.slope(shift) / bend;
+  if (std::abs(shift) == max_shift) return match; // the peak may lie beyond
+  constexpr int max_middle = max_shift - Likelihoods::reach;
+  const int middle = std::clamp(shift, -max_middle, max_middle);
+  if (const double bend = best.bend(middle); bend < 0.0) {
+    match.late_s = grid_s * (middle - best.slope(middle) / bend);
     match.late_deviation_s = std::min(grid_s / std::sqrt(-bend), max_late_s);
   }
   return match;

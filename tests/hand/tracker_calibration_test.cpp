@@ -208,64 +208,101 @@ private:
   std::vector<WristAngles> wrist_;
 };
 
-/// The greatest errors over many arms, and how many were refused.
+/// The errors over many arms, and how many were refused.
 struct Worst {
   double centre_mm = 0.0, turn_deg = 0.0, late_ms = 0.0;
-  double median_centre_mm = 0.0, median_late_ms = 0.0;
+  double median_late_ms = 0.0;
+  double centre_95_mm = 0.0; ///< the 95th percentile
+  double rms_centre_mm = 0.0;
   int refused = 0, without_time = 0;
   std::string message;
 };
 
-Worst worst_of(Scene scene, int seeds, std::uint64_t first_seed) {
+Worst worst_of(const std::vector<Scene>& scenes, int seeds, std::uint64_t first_seed) {
   Worst worst;
   std::vector<double> centres, lates;
-  for (int k = 0; k < seeds; ++k) {
-    scene.side = k % 2 == 0 ? Side::right : Side::left;
-    const Recording recording(scene, first_seed + static_cast<std::uint64_t>(k));
-    const auto made = recording.calibrate();
-    if (!made) {
-      ++worst.refused;
-      worst.message = made.error().message;
-      continue;
+  for (Scene scene : scenes) {
+    for (int k = 0; k < seeds; ++k) {
+      scene.side = k % 2 == 0 ? Side::right : Side::left;
+      const Recording recording(scene, first_seed + static_cast<std::uint64_t>(k));
+      const auto made = recording.calibrate();
+      if (!made) {
+        ++worst.refused;
+        worst.message = made.error().message;
+        continue;
+      }
+      centres.push_back(recording.centre_error_mm(*made));
+      worst.turn_deg = std::max(worst.turn_deg, recording.turn_error_deg(*made));
+      if (made->report.time_offset == TimeOffset::measured)
+        lates.push_back(recording.late_error_ms(*made));
+      else
+        ++worst.without_time;
     }
-    centres.push_back(recording.centre_error_mm(*made));
-    worst.centre_mm = std::max(worst.centre_mm, centres.back());
-    worst.turn_deg = std::max(worst.turn_deg, recording.turn_error_deg(*made));
-    if (made->report.time_offset != TimeOffset::measured) {
-      ++worst.without_time;
-      continue;
-    }
-    lates.push_back(recording.late_error_ms(*made));
-    worst.late_ms = std::max(worst.late_ms, lates.back());
   }
   std::sort(centres.begin(), centres.end());
   std::sort(lates.begin(), lates.end());
-  if (!centres.empty()) worst.median_centre_mm = centres[centres.size() / 2];
-  if (!lates.empty()) worst.median_late_ms = lates[lates.size() / 2];
+  if (!lates.empty()) {
+    worst.late_ms = lates.back();
+    worst.median_late_ms = lates[lates.size() / 2];
+  }
+  if (!centres.empty()) {
+    worst.centre_mm = centres.back();
+    worst.centre_95_mm = centres[centres.size() * 19 / 20];
+    double square = 0.0;
+    for (const double centre_mm : centres)
+      square += centre_mm * centre_mm;
+    worst.rms_centre_mm = std::sqrt(square / static_cast<double>(centres.size()));
+  }
   return worst;
+}
+
+Worst worst_of(const Scene& scene, int seeds, std::uint64_t first_seed) {
+  return worst_of(std::vector{scene}, seeds, first_seed);
+}
+
+/// A FASTRAK with one, two and four stations.
+std::vector<Scene> fastrak_scenes(double cone_deg, double skin_mm) {
+  std::vector<Scene> scenes;
+  for (const double rate_hz : {120.0, 60.0, 30.0}) {
+    scenes.emplace_back();
+    scenes.back().cone_deg = cone_deg;
+    scenes.back().skin_mm = skin_mm;
+    scenes.back().pose_rate_hz = rate_hz;
+  }
+  return scenes;
 }
 
 } // namespace
 
 TEST_SUITE("tracker calibration") {
-  TEST_CASE("with a FASTRAK's noise, the centre is within a millimetre, and the time as well") {
-    for (const double cone_deg : {15.0, 22.0, 30.0}) {
-      for (const double rate_hz : {120.0, 60.0}) {
-        Scene scene;
-        scene.cone_deg = cone_deg;
-        scene.pose_rate_hz = rate_hz;
-        const Worst worst = worst_of(scene, 20, 1);
-        CAPTURE(cone_deg);
-        CAPTURE(rate_hz);
-        CAPTURE(worst.message);
-        CHECK(worst.refused == 0);
-        CHECK(worst.without_time == 0);
-        CHECK(worst.median_centre_mm <= 0.8);
-        CHECK(worst.centre_mm <= (cone_deg < 20.0 ? 1.5 : 1.0));
-        CHECK(worst.median_late_ms <= 0.5);
-        CHECK(worst.late_ms <= (cone_deg < 20.0 ? 2.0 : 1.0));
-        CHECK(worst.turn_deg <= 0.5);
-      }
+  TEST_CASE("with a FASTRAK's noise, the centre is within a millimetre, and the time within 1 ms") {
+    const Worst worst = worst_of(fastrak_scenes(15.0, 0.0), 20, 1);
+    CAPTURE(worst.message);
+    CHECK(worst.refused == 0);
+    CHECK(worst.without_time == 0);
+    CHECK(worst.centre_mm <= 1.0);
+    CHECK(worst.late_ms <= 1.0);
+    CHECK(worst.turn_deg <= 0.5);
+  }
+
+  TEST_CASE("if skin moves as well, the centre is as near as the best method finds it") {
+    // Least squares with the true covariance of skin and noise, the best unbiased method, has a
+    // root mean square of 0.58, 0.62 and 0.68 mm for a cone of 15 degrees at the three rates, and
+    // in proportion to 1 / sin(cone) for others. Its 95th percentile is 1.0 to 1.4 mm in a cone of
+    // 15 degrees, and below a millimetre in 20 degrees.
+    constexpr double bound_rms_mm = 0.63;
+    for (const double cone_deg : {15.0, 20.0, 30.0}) {
+      const Worst worst = worst_of(fastrak_scenes(cone_deg, 1.0), 20, 1);
+      CAPTURE(cone_deg);
+      CAPTURE(worst.message);
+      CHECK(worst.refused == 0);
+      CHECK(worst.without_time == 0);
+      CHECK(worst.rms_centre_mm <=
+            1.1 * bound_rms_mm * std::sin(15.0 * degree) / std::sin(cone_deg * degree));
+      CHECK(worst.centre_95_mm <= (cone_deg < 20.0 ? 1.3 : 1.0));
+      CHECK(worst.late_ms <= 1.0);
+      CHECK(worst.median_late_ms <= 0.3);
+      CHECK(worst.turn_deg <= 0.5);
     }
   }
 
@@ -293,7 +330,7 @@ TEST_SUITE("tracker calibration") {
   }
 
   TEST_CASE("lateness has both signs, and the tracker's front need not be the hand's") {
-    for (const double late_s : {-0.2, -0.03, 0.0, 0.08, 0.3}) {
+    for (const double late_s : {-0.39, -0.2, -0.03, 0.0, 0.08, 0.3, 0.39}) {
       Scene scene;
       scene.late_s = late_s;
       scene.heading_deg = 500.0 * late_s;
@@ -327,7 +364,7 @@ TEST_SUITE("tracker calibration") {
     scene.glove_gain = 0.7;
     const Worst worst = worst_of(scene, 20, 500);
     CHECK(worst.without_time == 0);
-    CHECK(worst.late_ms <= 2.0);
+    CHECK(worst.late_ms <= 1.0);
     CHECK(worst.turn_deg <= 2.0);
   }
 
@@ -337,7 +374,7 @@ TEST_SUITE("tracker calibration") {
     const Worst worst = worst_of(scene, 20, 600);
     CHECK(worst.refused == 0);
     CHECK(worst.centre_mm <= 1.2);
-    CHECK(worst.late_ms <= 1.5);
+    CHECK(worst.late_ms <= 1.0);
     const Recording recording(scene, 600);
     const auto made = recording.calibrate();
     REQUIRE(made);
