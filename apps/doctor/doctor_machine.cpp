@@ -149,7 +149,7 @@ void check_rules(const MachineFacts& facts, Findings& found) {
       finding.remedy = "sudo mv " + path + " " + path + ".old && " + as_root("udev install");
       break;
     default:
-      finding.what = "is not installed, so gloves may need root or a group";
+      finding.what = "is not installed, so gloves and SpaceMice may need root or a group";
     }
     found.push_back(std::move(finding));
   }

@@ -1,5 +1,5 @@
-// nendo udev: installs the rules that make gloves usable without root, and binds gloves and
-// trackers to adapters.
+// nendo udev: installs the rules that make gloves and SpaceMice usable without root, and binds
+// gloves and trackers to adapters.
 
 #include <filesystem>
 #include <iostream>
@@ -183,8 +183,8 @@ void nendo::app::add_udev(cli::Command& program) {
       "udev", "Makes gloves and trackers usable without root, and gives them stable names");
   udev.require_command();
   udev.set_footer("Rules go to /etc/udev/rules.d, for which changes need sudo.");
-  add(udev, options, "install", "Installs the rules that identify gloves and grant access to them",
-      install);
+  add(udev, options, "install",
+      "Installs the rules that identify gloves and SpaceMice, and grant access to them", install);
   add(udev, options, "uninstall", "Removes the installed rules; bindings stay", uninstall);
   cli::Command shown = add(udev, options, "show", "Shows the rules and bindings in effect", show);
   shown.add_option("FILE", options->file, "Print this file of rules, as install writes it");

@@ -149,6 +149,40 @@ TEST_SUITE("udev") {
     CHECK(verdict->property(escaping.tty_path(), "ID_NENDO_GLOVE") == "1");
   }
 
+  TEST_CASE("the events of SpaceMice are granted, and those of other devices are not") {
+    const std::string usb = "/devices/pci0000:00/0000:00:14.0/usb1/1-2/1-2:1.0/0003:046D:C626.0001";
+    const std::string bluetooth = "/devices/virtual/misc/uhid/0005:256F:C63A.0002";
+    const PluggedInput navigator{usb, "5", "046d", "c626", "3f"}; // REL_ axes
+    const PluggedInput wireless{bluetooth, "6", "256f", "c63a", "0", "3f"};
+    const PluggedInput its_maker_s_keyboard{bluetooth, "7", "256f", "c664", "0", "100000000"};
+    const PluggedInput its_maker_s_mouse{bluetooth, "8", "256f", "c654", "1943"};
+    const PluggedInput another_mouse{usb, "9", "046d", "c077", "143"};
+    const PluggedInput another_joystick{usb, "10", "046d", "c215", "0", "3f"};
+    const std::vector inputs{navigator,         wireless,      its_maker_s_keyboard,
+                             its_maker_s_mouse, another_mouse, another_joystick};
+    std::vector<std::string> paths;
+    for (const PluggedInput& input : inputs) {
+      paths.push_back(input.event_path());
+      paths.push_back(input.input_path());
+    }
+    const Rules rules;
+    ASK(verdict, rules.path(), inputs, paths);
+    CHECK_FALSE(verdict->complains());
+    for (const PluggedInput& input : {navigator, wireless}) {
+      const std::string path = input.event_path();
+      CHECK(verdict->property(path, "TAGS").find(":uaccess:") != std::string::npos);
+      CHECK(verdict->property(path, "ID_NENDO_GLOVE").empty());
+      CHECK_FALSE(verdict->mentions(path, "GROUP ")); // a display server may need its own
+      CHECK_FALSE(verdict->mentions(input.input_path(), "NENDO"));
+    }
+    for (const PluggedInput& input :
+         {its_maker_s_keyboard, its_maker_s_mouse, another_mouse, another_joystick}) {
+      REQUIRE(verdict->property(input.event_path(), "ACTION") == "add"); // udev saw it
+      for (const char* const trace : {"ID_NENDO", "uaccess:"})
+        CHECK_MESSAGE(!verdict->mentions(input.event_path(), trace), input.number);
+    }
+  }
+
   TEST_CASE("the control: a bad rule is noticed") {
     const TemporaryFolder folder;
     const auto device = adapter("1-2", "ttyUSB0", "A1");

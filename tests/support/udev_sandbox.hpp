@@ -66,6 +66,32 @@ inline std::string describe(const std::vector<PluggedDevice>& devices) {
   return text.str();
 }
 
+/// An input device of the kernel. Its numbers and capabilities are hexadecimal, as /sys has them.
+struct PluggedInput {
+  std::string parent; ///< "/devices/virtual/misc/uhid/0005:256F:C63A.0001"
+  std::string number; ///< "5" of event5
+  std::string vendor, product;
+  std::string relative = "0", absolute = "0";
+
+  std::string input_path() const { return parent + "/input/input" + number; }
+  std::string event_path() const { return input_path() + "/event" + number; }
+};
+
+/// The same for input devices. A mouse and a joystick, mouseN and jsN, are not described.
+inline std::string describe(const std::vector<PluggedInput>& inputs) {
+  std::ostringstream text;
+  for (const PluggedInput& input : inputs) {
+    const int minor = 64 + std::stoi(input.number);
+    text << "P: " << input.input_path() << "\nE: SUBSYSTEM=input\nA: id/vendor=" << input.vendor
+         << "\\n\nA: id/product=" << input.product << "\\n\nA: capabilities/rel=" << input.relative
+         << "\\n\nA: capabilities/abs=" << input.absolute << "\\n\n\nP: " << input.event_path()
+         << "\nN: input/event" << input.number << "\nE: DEVNAME=/dev/input/event" << input.number
+         << "\nE: SUBSYSTEM=input\nE: MAJOR=13\nE: MINOR=" << minor << "\nA: dev=13:" << minor
+         << "\\n\nL: device=../../input" << input.number << "\n\n";
+  }
+  return text.str();
+}
+
 /// What udev said of each path, and the links to ports that it made.
 struct UdevVerdict {
   std::map<std::string, std::string> said;
@@ -94,13 +120,14 @@ struct UdevVerdict {
   }
 };
 
-/// Returns udev's verdict; nothing if this machine does not let a program have a /dev of its own.
-inline std::optional<UdevVerdict> ask_udev(const std::filesystem::path& rules,
-                                           const std::vector<PluggedDevice>& devices,
-                                           const std::vector<std::string>& paths) {
+/// Returns udev's verdict on the devices of a description; nothing if this machine does not let a
+/// program have a /dev of its own.
+inline std::optional<UdevVerdict> ask_udev_of(const std::string& devices,
+                                              const std::filesystem::path& rules,
+                                              const std::vector<std::string>& paths) {
   const TemporaryFolder folder;
   const auto description = folder.path() / "devices.umockdev";
-  write_file(description, describe(devices));
+  write_file(description, devices);
   std::string command =
       NENDO_UDEV_SANDBOX " '" + rules.string() + "' '" + description.string() + "'";
   for (const std::string& path : paths)
@@ -117,6 +144,16 @@ inline std::optional<UdevVerdict> ask_udev(const std::filesystem::path& rules,
     }
   }
   return verdict;
+}
+inline std::optional<UdevVerdict> ask_udev(const std::filesystem::path& rules,
+                                           const std::vector<PluggedDevice>& devices,
+                                           const std::vector<std::string>& paths) {
+  return ask_udev_of(describe(devices), rules, paths);
+}
+inline std::optional<UdevVerdict> ask_udev(const std::filesystem::path& rules,
+                                           const std::vector<PluggedInput>& inputs,
+                                           const std::vector<std::string>& paths) {
+  return ask_udev_of(describe(inputs), rules, paths);
 }
 
 } // namespace nendo::test

@@ -7,6 +7,7 @@
 
 #include <nendo/base/files.hpp>
 #include <nendo/udev/bindings.hpp>
+#include <nendo/udev/device_table.hpp>
 #include <nendo/udev/rules.hpp>
 
 #include "support/shell.hpp"
@@ -74,6 +75,19 @@ TEST_SUITE("udev rules") {
       for (const char* const vendor : {"0403", "067b", "10c4", "1a86"})
         CHECK_MESSAGE(rules.find(vendor) == std::string::npos, vendor);
     }
+  }
+
+  TEST_CASE("SpaceMice are known by their numbers, and other devices of Logitech are not") {
+    for (const char* const product : {"c603", "c605", "c606", "c621", "c623", "c625", "c626",
+                                      "c627", "c628", "c629", "c62b", "c640"})
+      CHECK_MESSAGE(numbers_a_space_mouse("046d", product), product);
+    for (const char* const product : {"c62e", "c632", "c633", "c635", "c63a", "c652"})
+      CHECK_MESSAGE(numbers_a_space_mouse("256f", product), product);
+    CHECK_FALSE(numbers_a_space_mouse("046d", "c077"));
+    CHECK_FALSE(numbers_a_space_mouse("046d", "c62"));
+    CHECK_FALSE(numbers_a_space_mouse("046d", "c6266"));
+    CHECK_FALSE(numbers_a_space_mouse("045e", "c626"));
+    CHECK_FALSE(numbers_a_space_mouse("", ""));
   }
 
   TEST_CASE("the grant comes before systemd turns tags into permissions") {

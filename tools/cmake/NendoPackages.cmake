@@ -50,8 +50,8 @@ nendo_package(library ${library_package} libs "data gloves that shape 3-D models
 nendo_package(development libnendo-dev libdevel "data gloves that shape 3-D models - for building programs"
   "This package has headers, and files for CMake and pkg-config.")
 nendo_package(udev nendo-udev misc "data gloves that shape 3-D models - udev rules"
-  "This package has the rules by which udev knows data gloves, lets the user at
-the screen open them, and keeps ModemManager off them.")
+  "This package has the rules by which udev knows data gloves and SpaceMice, lets
+the user at the screen open them, and keeps ModemManager off gloves.")
 if(NENDO_MARKERS)
   nendo_package(markers nendo-markers science "data gloves that shape 3-D models - wrists tracked by a camera"
     "This package has nendo-markers, which finds printed bracelets in the pictures

@@ -39,8 +39,17 @@ constexpr std::array adapters{
     UsbAdapter{{0x1A86, 0x7523}, "WCH", "ch341"},
 };
 
+// 3Dconnexion, and what it made as a part of Logitech: c603 to c640 (spacenavd, usb.ids).
+constexpr std::array space_mice{SpaceMouseNumbers{"256f", "????"},
+                                SpaceMouseNumbers{"046d", "c6??"}};
+
 // Not "Immersion": that maker also made digitisers with a serial port.
 constexpr std::array<std::string_view, 2> names{"cyberglove", "cybertouch"};
+
+bool matches(std::string_view text, std::string_view pattern) noexcept {
+  return std::equal(text.begin(), text.end(), pattern.begin(), pattern.end(),
+                    [](char c, char wanted) { return wanted == '?' || c == wanted; });
+}
 
 } // namespace
 
@@ -56,6 +65,10 @@ std::span<const UsbGloveModel> usb_glove_models() noexcept {
 
 std::span<const UsbAdapter> usb_adapters() noexcept {
   return adapters;
+}
+
+std::span<const SpaceMouseNumbers> space_mouse_numbers() noexcept {
+  return space_mice;
 }
 
 std::span<const std::string_view> glove_names() noexcept {
@@ -79,6 +92,12 @@ bool names_a_glove(std::string text) {
   text = to_lower(std::move(text));
   return std::any_of(names.begin(), names.end(),
                      [&](std::string_view name) { return text.find(name) != std::string::npos; });
+}
+
+bool numbers_a_space_mouse(std::string_view vendor, std::string_view product) noexcept {
+  return std::any_of(space_mice.begin(), space_mice.end(), [&](const SpaceMouseNumbers& numbers) {
+    return matches(vendor, numbers.vendor) && matches(product, numbers.products);
+  });
 }
 
 } // namespace nendo::udev

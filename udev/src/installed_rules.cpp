@@ -11,6 +11,7 @@
 
 #include <nendo/base/files.hpp>
 #include <nendo/udev/bindings.hpp>
+#include <nendo/udev/device_table.hpp>
 #include <nendo/udev/rules.hpp>
 
 extern char** environ; // NOLINT(readability-redundant-declaration): POSIX has it in no header
@@ -53,6 +54,15 @@ bool run(std::vector<std::string> words) {
     if (errno != EINTR) return false;
   }
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// Not for all input devices: an X server would set up each keyboard again.
+std::vector<std::string> trigger_of_space_mice(const char* udevadm) {
+  std::vector<std::string> words{udevadm, "trigger", "--action=change", "--subsystem-match=input"};
+  for (const auto& [vendor, products] : space_mouse_numbers())
+    words.push_back(products == "????" ? "--property-match=ID_VENDOR_ID=" + std::string(vendor)
+                                       : "--property-match=ID_MODEL_ID=" + std::string(products));
+  return words;
 }
 
 } // namespace
@@ -126,11 +136,12 @@ std::string refresh_udev() {
     if (::access(udevadm, X_OK) != 0) continue;
     const bool done = run({udevadm, "control", "--reload"}) &&
                       run({udevadm, "trigger", "--action=change", "--subsystem-match=usb",
-                           "--subsystem-match=usb-serial", "--subsystem-match=tty"});
+                           "--subsystem-match=usb-serial", "--subsystem-match=tty"}) &&
+                      run(trigger_of_space_mice(udevadm));
     if (done) return "udev has read its rules again and looked at what is plugged in";
     break;
   }
-  return "udev could not be notified; run: sudo udevadm control --reload, then plug the glove in "
+  return "udev could not be notified; run: sudo udevadm control --reload, then plug the device in "
          "again";
 }
 

@@ -44,6 +44,18 @@ std::string by_name(std::string_view word) {
   return rules;
 }
 
+/// Returns the rules for event nodes. An input device with six axes has the codes 0 to 5 of ABS_
+/// or, with older kernels, of REL_, whose bits are the last digits of the device's capabilities.
+std::string space_mice() {
+  std::string rules;
+  for (const SpaceMouseNumbers& numbers : space_mouse_numbers())
+    for (const std::string axes : {"abs", "rel"})
+      rules += "KERNEL==\"event*\", ATTRS{id/vendor}==\"" + std::string(numbers.vendor) +
+               "\", ATTRS{id/product}==\"" + std::string(numbers.products) +
+               "\", ATTRS{capabilities/" + axes + "}==\"*3f\", ENV{ID_NENDO_TRACKER}=\"1\"\n";
+  return rules;
+}
+
 std::string adapters_left_out() {
   std::string list;
   for (const UsbAdapter& adapter : usb_adapters())
@@ -53,12 +65,19 @@ std::string adapters_left_out() {
 
 std::string identification() {
   std::string text(rule_mark);
-  text += "which USB devices are data gloves. Changes to this file are lost at the next\n"
-          "# update. `nendo udev bind` writes to 60-nendo-local.rules, which udev reads first.\n"
-          "ACTION==\"remove\", GOTO=\"nendo_end\"\n"
-          "SUBSYSTEMS==\"usb\", GOTO=\"nendo_usb\"\n" // != would hold if any parent is another
-          "GOTO=\"nendo_end\"\nLABEL=\"nendo_usb\"\n\n"
-          "# Gloves with USB numbers of their own.\n";
+  text +=
+      "which devices are data gloves and SpaceMice. Changes to this file are lost at the\n"
+      "# next update. `nendo udev bind` writes to 60-nendo-local.rules, which udev reads first.\n"
+      "ACTION==\"remove\", GOTO=\"nendo_end\"\n"
+      "SUBSYSTEM==\"input\", GOTO=\"nendo_input\"\n"
+      "SUBSYSTEMS==\"usb\", GOTO=\"nendo_usb\"\n" // != would hold if any parent is another
+      "GOTO=\"nendo_end\"\n\n"
+      "# SpaceMice, which move wrists. Their makers' keyboards and mice do not have six axes.\n"
+      "LABEL=\"nendo_input\"\n" +
+      space_mice() +
+      "GOTO=\"nendo_end\"\n\n"
+      "# Gloves with USB numbers of their own.\n"
+      "LABEL=\"nendo_usb\"\n";
   for (const UsbGloveModel& model : usb_glove_models())
     text += by_numbers(model);
   text += "\n# Devices that call themselves a glove.\n";
@@ -94,13 +113,16 @@ std::string grant() {
   return std::string(rule_mark) +
          "who may open data gloves and trackers. Changes to this file are lost at the next "
          "update.\n"
-         "# uaccess: the user at the screen; the group: a machine without a screen.\n"
+         "# uaccess: the user at the screen; the group: a machine without a screen. Input devices "
+         "keep their group.\n"
          "ACTION==\"remove\", GOTO=\"nendo_uaccess_end\"\n"
          "ENV{ID_NENDO_GLOVE}!=\"1\", ENV{ID_NENDO_TRACKER}!=\"1\", GOTO=\"nendo_uaccess_end\"\n"
          "SUBSYSTEM==\"tty\", " +
          rights +
          "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", ENV{ID_NENDO_MODEL}==\"?*\", " +
-         rights + "LABEL=\"nendo_uaccess_end\"\n";
+         rights +
+         "SUBSYSTEM==\"input\", TAG+=\"uaccess\"\n"
+         "LABEL=\"nendo_uaccess_end\"\n";
 }
 
 } // namespace

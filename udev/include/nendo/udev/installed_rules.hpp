@@ -45,8 +45,8 @@ struct RuleChange {
 /// disk does. Errors: no_permission (the message asks for sudo), failed (also if it is a link).
 NENDO_API Result<void> apply(const RuleChange& change);
 
-/// Makes the running udev read its rules again and apply them to USB devices and ports that are
-/// plugged in. Returns one line that says what came of it. Blocks while udevadm runs.
+/// Makes the running udev read its rules again and apply them to USB devices, ports and
+/// SpaceMice that are plugged in. Returns one line that says what came of it. Blocks while udevadm runs.
 NENDO_API std::string refresh_udev();
 
 } // namespace nendo::udev

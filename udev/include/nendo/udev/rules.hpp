@@ -16,9 +16,9 @@ struct RuleText {
   std::string text;
 };
 
-/// Returns 60-nendo.rules, which says which devices are gloves, and 61-nendo-uaccess.rules, which
-/// grants them to the user at the screen and to a group. Neither names USB-serial adapters, because
-/// anything may be connected to them.
+/// Returns 60-nendo.rules, which says which devices are gloves or SpaceMice, and
+/// 61-nendo-uaccess.rules, which grants them to the user at the screen, and gloves also to a group.
+/// Neither names USB-serial adapters, because anything may be connected to them.
 NENDO_API std::vector<RuleText> shipped_rules();
 
 /// The first line of these files begins with this mark; files without it are not nendo's.
