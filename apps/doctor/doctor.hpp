@@ -37,11 +37,13 @@ struct Examination {
 
 /// The facts that the checks of ports use.
 struct PortFacts {
-  std::vector<driver::GloveCandidate> candidates;
-  std::vector<std::string> grabbers; ///< driver::running_port_grabbers()
+  std::vector<driver::DeviceCandidate> candidates; ///< ports, USB gloves, SpaceMice
+  std::vector<std::string> grabbers;               ///< driver::running_port_grabbers()
 };
 
-/// Returns all findings about ports and USB devices. Pure.
+/// Reads the facts of this machine. Blocks for less than a second.
+PortFacts read_ports();
+/// Returns all findings about ports and devices. Pure.
 std::vector<Finding> diagnose_ports(const PortFacts& facts);
 /// Examines this machine's ports now. Blocks for less than a second.
 Examination check_ports();

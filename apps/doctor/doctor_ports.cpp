@@ -1,4 +1,5 @@
-// The checks of ports: whether they may be opened, are used by others, and are fast enough.
+// The checks of ports and SpaceMice: whether they may be opened, are used by others, and are fast
+// enough.
 
 #include "doctor/doctor.hpp"
 
@@ -10,8 +11,8 @@
 namespace nendo::doctor {
 namespace {
 
+using driver::DeviceCandidate;
 using driver::DeviceKind;
-using driver::GloveCandidate;
 using namespace std::chrono_literals;
 
 using Findings = std::vector<Finding>;
@@ -20,14 +21,19 @@ bool runs(const PortFacts& facts, std::string_view program) {
   return std::find(facts.grabbers.begin(), facts.grabbers.end(), program) != facts.grabbers.end();
 }
 
+bool is_input(const DeviceCandidate& candidate) noexcept {
+  return candidate.kind == DeviceKind::input_device;
+}
+
 /// A port that nothing identifies as a glove's may serve another purpose. It gives warnings only,
-/// unless it is `likely` to be a glove's.
-Severity severity_for(const GloveCandidate& candidate, bool likely) {
-  return candidate.identified || likely ? Severity::failure : Severity::warning;
+/// unless it is `likely` to be a glove's. So does a SpaceMouse, which may serve other programs.
+Severity severity_for(const DeviceCandidate& candidate, bool likely) {
+  const bool is_failure = (candidate.identified || likely) && !is_input(candidate);
+  return is_failure ? Severity::failure : Severity::warning;
 }
 
 void check_presence(const PortFacts& facts, Findings& found) {
-  if (!facts.candidates.empty()) return;
+  if (!std::ranges::all_of(facts.candidates, is_input)) return;
   found.push_back({Severity::warning, "presence", "",
                    "no serial port and no USB glove is plugged in",
                    "plug the glove in (`nendo devices --watch` reports it); a container needs "
@@ -35,7 +41,7 @@ void check_presence(const PortFacts& facts, Findings& found) {
 }
 
 void check_nodes(const PortFacts& facts, Findings& found) {
-  for (const GloveCandidate& candidate : facts.candidates) {
+  for (const DeviceCandidate& candidate : facts.candidates) {
     if (!candidate.node_missing || candidate.kind == DeviceKind::portless_adapter) continue;
     found.push_back(
         {severity_for(candidate, candidate.usb.has_value()), "node", candidate.device,
@@ -45,7 +51,7 @@ void check_nodes(const PortFacts& facts, Findings& found) {
 }
 
 void check_permission(const PortFacts& facts, Findings& found) {
-  for (const GloveCandidate& candidate : facts.candidates) {
+  for (const DeviceCandidate& candidate : facts.candidates) {
     if (candidate.may_open || candidate.access.empty()) continue;
     if (candidate.kind == DeviceKind::portless_adapter) continue; // not what would be opened
     found.push_back({severity_for(candidate, candidate.usb.has_value()), "permission",
@@ -55,7 +61,7 @@ void check_permission(const PortFacts& facts, Findings& found) {
 }
 
 void check_portless(const PortFacts& facts, Findings& found) {
-  for (const GloveCandidate& candidate : facts.candidates) {
+  for (const DeviceCandidate& candidate : facts.candidates) {
     if (candidate.kind != DeviceKind::portless_adapter) continue;
     if (runs(facts, "brltty")) {
       found.push_back({Severity::failure, "portless", candidate.device,
@@ -70,7 +76,8 @@ void check_portless(const PortFacts& facts, Findings& found) {
 }
 
 void check_holders(const PortFacts& facts, Findings& found) {
-  for (const GloveCandidate& candidate : facts.candidates) {
+  for (const DeviceCandidate& candidate : facts.candidates) {
+    if (is_input(candidate)) continue; // several programs may read it
     for (const auto& holder : candidate.holders) {
       const std::string pid = std::to_string(holder.pid);
       found.push_back(
@@ -97,7 +104,7 @@ void check_grabbers(const PortFacts& facts, Findings& found) {
               false},
   };
   const auto unmarked = std::find_if(
-      facts.candidates.begin(), facts.candidates.end(), [](const GloveCandidate& candidate) {
+      facts.candidates.begin(), facts.candidates.end(), [](const DeviceCandidate& candidate) {
         return candidate.kind == DeviceKind::serial_port && candidate.usb && !candidate.left_alone;
       });
   if (unmarked == facts.candidates.end()) return;
@@ -112,7 +119,7 @@ void check_grabbers(const PortFacts& facts, Findings& found) {
 }
 
 void check_latency(const PortFacts& facts, Findings& found) {
-  for (const GloveCandidate& candidate : facts.candidates) {
+  for (const DeviceCandidate& candidate : facts.candidates) {
     if (!candidate.latency_timer || *candidate.latency_timer <= 1ms) continue;
     found.push_back({Severity::warning, "latency_timer", candidate.device,
                      "the adapter delays replies by " +
@@ -133,12 +140,21 @@ std::vector<Finding> diagnose_ports(const PortFacts& facts) {
   return found;
 }
 
+PortFacts read_ports() {
+  PortFacts facts{driver::find_devices(), driver::running_port_grabbers()};
+  // A mouse that only the display server may read is as it should be.
+  std::erase_if(facts.candidates, [](const DeviceCandidate& candidate) {
+    return is_input(candidate) && !candidate.identified;
+  });
+  return facts;
+}
+
 Examination check_ports() {
-  const PortFacts facts{driver::find_gloves(), driver::running_port_grabbers()};
+  const PortFacts facts = read_ports();
   Examination examination{diagnose_ports(facts), {}};
-  for (const GloveCandidate& candidate : facts.candidates)
+  for (const DeviceCandidate& candidate : facts.candidates)
     examination.looked_at.push_back(candidate.device);
-  if (facts.candidates.empty())
+  if (std::ranges::all_of(facts.candidates, is_input))
     examination.looked_at.emplace_back("serial ports and USB gloves (none)");
   examination.looked_at.emplace_back("programs that take ports");
   return examination;

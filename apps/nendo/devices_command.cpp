@@ -22,7 +22,7 @@
 namespace nendo::app::devices_command {
 namespace {
 
-using driver::GloveCandidate;
+using driver::DeviceCandidate;
 using nlohmann::ordered_json;
 
 struct Options {
@@ -43,16 +43,17 @@ ordered_json json_of(const driver::UsbIdentity& usb) {
 }
 
 /// Returns the specifications by which the device can be tried as a tracker.
-std::vector<std::string> tracker_specs_of(const GloveCandidate& candidate) {
-  const bool may_be = candidate.kind == driver::DeviceKind::serial_port && !candidate.identified;
-  if (!may_be) return {};
+std::vector<std::string> tracker_specs_of(const DeviceCandidate& candidate) {
+  if (!candidate.tracker_spec.empty()) return {candidate.tracker_spec};
+  const bool is_glove = candidate.identified && !candidate.spec.empty();
+  if (candidate.kind != driver::DeviceKind::serial_port || is_glove) return {};
   return gloves::tracker_specs_of_port(candidate.stable_name.empty() ? candidate.device
                                                                      : candidate.stable_name);
 }
 
 /// Returns an object with the same keys for every device. A value is null where a device has no
 /// such thing.
-ordered_json json_of(const GloveCandidate& candidate) {
+ordered_json json_of(const DeviceCandidate& candidate) {
   ordered_json holders = ordered_json::array();
   for (const auto& holder : candidate.holders)
     holders.push_back({{"pid", holder.pid}, {"name", holder.name}});
@@ -77,19 +78,22 @@ ordered_json json_of(const GloveCandidate& candidate) {
   return line;
 }
 
-void print_text(const GloveCandidate& candidate) {
+void print_uses(const DeviceCandidate& candidate) {
   const auto trackers = tracker_specs_of(candidate);
-  std::cout << candidate.device << ": " << candidate.description << "\n  why        "
-            << candidate.reason;
   if (!candidate.spec.empty() || trackers.empty())
     std::cout << "\n  use it as  " << (candidate.spec.empty() ? "nothing yet" : candidate.spec);
-  if (!trackers.empty()) {
-    std::cout << (candidate.spec.empty() ? "\n  use it as  " : "\n  or as      ");
-    for (const std::string& spec : trackers)
-      std::cout << (&spec == &trackers.front() ? "" : ", ") << spec;
-    std::cout << ", if it is a tracker: `nendo doctor " << shell_word(trackers.front())
-              << "` tries it";
-  }
+  if (trackers.empty()) return;
+  std::cout << (candidate.spec.empty() ? "\n  use it as  " : "\n  or as      ");
+  for (const std::string& spec : trackers)
+    std::cout << (&spec == &trackers.front() ? "" : ", ") << shell_word(spec);
+  if (candidate.tracker_spec.empty()) std::cout << ", if it is a tracker";
+  std::cout << ": `nendo doctor " << shell_word(trackers.front()) << "` tries it";
+}
+
+void print_text(const DeviceCandidate& candidate) {
+  std::cout << candidate.device << ": " << candidate.description << "\n  why        "
+            << candidate.reason;
+  print_uses(candidate);
   if (candidate.node_missing) {
     std::cout << "\n  may open   no user: the kernel has it, but its device node is missing";
   } else {
@@ -102,18 +106,21 @@ void print_text(const GloveCandidate& candidate) {
   for (const auto& holder : candidate.holders) {
     std::cout << "\n  used by    " << holder.name;
     if (holder.pid > 0) std::cout << " (pid " << holder.pid << ")";
-    std::cout << "; close that program first";
+    // Several programs may read the same input device; nendo takes it from them while it runs.
+    if (candidate.kind != driver::DeviceKind::input_device)
+      std::cout << "; close that program first";
   }
   std::cout << std::endl;
 }
 
 Result<void> list_devices(bool json) {
-  const auto candidates = driver::find_gloves();
+  const auto candidates = driver::find_devices();
   for (const auto& candidate : candidates)
     json ? cli::print_line(json_of(candidate)) : print_text(candidate);
   if (candidates.empty() && !json) {
-    std::cout << "No serial port or USB device can be a glove or a tracker. Plug one in, or use "
-                 "`sim`.\n";
+    std::cout
+        << "No serial port, USB device or input device can be a glove or a tracker. Plug one in, "
+           "or use `sim`.\n";
   }
   return {};
 }
@@ -127,7 +134,7 @@ std::string time_of_day(std::chrono::system_clock::time_point time) {
   return text.data();
 }
 
-void print_event(std::string_view event, const GloveCandidate& candidate, bool json) {
+void print_event(std::string_view event, const DeviceCandidate& candidate, bool json) {
   const auto now = std::chrono::system_clock::now();
   if (json) {
     const std::chrono::duration<double> since_epoch = now.time_since_epoch();
@@ -139,7 +146,8 @@ void print_event(std::string_view event, const GloveCandidate& candidate, bool j
   std::cout << time_of_day(now) << "  " << event << "  " << candidate.device << ": "
             << candidate.description;
   if (event != "detached") {
-    if (!candidate.spec.empty()) std::cout << "; use it as " << candidate.spec;
+    const std::string& spec = candidate.spec.empty() ? candidate.tracker_spec : candidate.spec;
+    if (!spec.empty()) std::cout << "; use it as " << shell_word(spec);
     if (!candidate.remedy.empty()) std::cout << "; first: " << candidate.remedy;
   }
   std::cout << std::endl;
@@ -154,8 +162,9 @@ Result<void> watch_devices(bool json) {
   for (const auto& candidate : (*watcher)->present())
     print_event("present", candidate, json);
   if (!(*watcher)->sees_usb()) {
-    cli::note("USB cannot be watched here, only the serial ports in /dev; gloves without a serial "
-              "port are not noticed");
+    cli::note(
+        "USB cannot be watched here, only the nodes in /dev; gloves without a serial port are "
+        "not noticed");
   }
   while (!cli::stop_requested()) {
     if (const auto event = (*watcher)->next(max_wait)) {
@@ -175,7 +184,7 @@ Result<void> devices(const Options& options) {
 void nendo::app::add_devices(cli::Command& program) {
   using namespace devices_command;
   cli::Command command = program.add_command(
-      "devices", "Lists ports and USB devices that can be gloves or trackers, and why");
+      "devices", "Lists ports and devices that can be gloves or trackers, and why");
   Options& options = command.on_chosen<Options>(devices);
   command.add_flag("--json", options.json, "One JSON object per line");
   command.add_flag("--watch", options.watch,

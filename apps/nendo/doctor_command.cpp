@@ -69,8 +69,9 @@ Result<doctor::Examination> check_glove(const std::string& spec) {
 /// opened.
 doctor::Examination check_known_gloves() {
   doctor::Examination examination;
-  for (const driver::GloveCandidate& candidate : driver::find_gloves()) {
-    if (!candidate.identified || !candidate.may_open || !candidate.holders.empty()) continue;
+  for (const driver::DeviceCandidate& candidate : driver::find_devices()) {
+    const bool is_glove = candidate.identified && !candidate.spec.empty();
+    if (!is_glove || !candidate.may_open || !candidate.holders.empty()) continue;
     auto examined = check_glove(candidate.spec);
     if (!examined) continue;
     examination.looked_at.push_back("sensors of " + candidate.spec);

@@ -131,7 +131,7 @@ int change_bindings(const std::string& before, const std::string& after, const O
 
 int bind(const Options& options) {
   std::vector<udev::SerialPort> ports;
-  for (driver::GloveCandidate& candidate : driver::find_gloves()) {
+  for (driver::DeviceCandidate& candidate : driver::find_devices()) {
     if (candidate.kind == driver::DeviceKind::serial_port)
       ports.push_back({std::move(candidate.device), std::move(candidate.usb)});
   }

@@ -13,15 +13,15 @@
 namespace doctor_command_test {
 
 using namespace nendo::doctor;
+using nendo::driver::DeviceCandidate;
 using nendo::driver::DeviceKind;
-using nendo::driver::GloveCandidate;
 using namespace std::chrono_literals;
 
 namespace {
 
 /// A port that nothing is wrong with.
-GloveCandidate good_adapter() {
-  GloveCandidate candidate;
+DeviceCandidate good_adapter() {
+  DeviceCandidate candidate;
   candidate.device = "/dev/ttyUSB0";
   candidate.spec = "serial:/dev/ttyUSB0";
   candidate.may_open = true;
@@ -33,8 +33,14 @@ GloveCandidate good_adapter() {
   return candidate;
 }
 
+/// The only finding about a machine with these devices.
+Finding only_finding_of(std::vector<DeviceCandidate> candidates) {
+  const auto found = diagnose_ports({std::move(candidates), {}});
+  REQUIRE(found.size() == 1);
+  return found[0];
+}
 /// The only finding about a machine with this one device.
-Finding only_finding(const GloveCandidate& candidate, std::vector<std::string> grabbers = {}) {
+Finding only_finding(const DeviceCandidate& candidate, std::vector<std::string> grabbers = {}) {
   const auto found = diagnose_ports({{candidate}, std::move(grabbers)});
   REQUIRE(found.size() == 1);
   CHECK(found[0].subject == candidate.device);
@@ -58,7 +64,7 @@ TEST_SUITE("doctor") {
   }
 
   TEST_CASE("a port that this user may not open is a failure, an on-board one a warning") {
-    GloveCandidate port = good_adapter();
+    DeviceCandidate port = good_adapter();
     port.may_open = false;
     port.access = "group dialout";
     port.remedy = "sudo usermod -aG dialout $USER, then log in again";
@@ -74,7 +80,7 @@ TEST_SUITE("doctor") {
   }
 
   TEST_CASE("a port without a node is a failure, with a remedy") {
-    GloveCandidate candidate = good_adapter();
+    DeviceCandidate candidate = good_adapter();
     candidate.may_open = false;
     candidate.access = "";
     candidate.node_missing = true;
@@ -88,14 +94,14 @@ TEST_SUITE("doctor") {
   }
 
   TEST_CASE("a port that vanished meanwhile is no finding") {
-    GloveCandidate port = good_adapter();
+    DeviceCandidate port = good_adapter();
     port.may_open = false;
     port.access = "";
     CHECK(diagnose_ports({{port}, {}}).empty());
   }
 
   TEST_CASE("programs that open what they should not are named while an adapter is unmarked") {
-    GloveCandidate port = good_adapter();
+    DeviceCandidate port = good_adapter();
     port.left_alone = false;
     CHECK(diagnose_ports({{port}, {}}).empty());
     for (const std::string program : {"ModemManager", "brltty"}) {
@@ -110,7 +116,7 @@ TEST_SUITE("doctor") {
   }
 
   TEST_CASE("a long latency timer is a warning with the command that shortens it") {
-    GloveCandidate port = good_adapter();
+    DeviceCandidate port = good_adapter();
     port.latency_timer = 16ms;
     const Finding finding = only_finding(port);
     CHECK(finding.severity == Severity::warning);
@@ -119,7 +125,7 @@ TEST_SUITE("doctor") {
   }
 
   TEST_CASE("a program that holds a port is named, and weighs more on a known glove") {
-    GloveCandidate port = good_adapter();
+    DeviceCandidate port = good_adapter();
     port.holders = {{812, "gpsd"}};
     CHECK(only_finding(port).severity == Severity::warning);
     port.identified = true;
@@ -131,7 +137,7 @@ TEST_SUITE("doctor") {
   }
 
   TEST_CASE("an adapter without a port is a failure, and brltty's if that runs") {
-    GloveCandidate adapter = good_adapter();
+    DeviceCandidate adapter = good_adapter();
     adapter.kind = DeviceKind::portless_adapter;
     adapter.device = "/dev/bus/usb/001/005";
     adapter.may_open = false;
@@ -142,6 +148,26 @@ TEST_SUITE("doctor") {
     const Finding finding = only_finding(adapter, {"brltty"});
     CHECK(finding.check == "portless");
     CHECK(finding.remedy.find("brltty") != std::string::npos);
+  }
+
+  TEST_CASE(
+      "a SpaceMouse that this user may not open is a warning, also if other programs read it") {
+    DeviceCandidate mouse;
+    mouse.kind = DeviceKind::input_device;
+    mouse.device = "/dev/input/event5";
+    mouse.identified = true;
+    mouse.access = "group input";
+    mouse.remedy = "sudo nendo udev install";
+    mouse.usb.emplace();
+    mouse.holders = {{812, "Xorg"}};
+    const Finding finding = only_finding_of({good_adapter(), mouse});
+    CHECK(finding.severity == Severity::warning);
+    CHECK(finding.check == "permission");
+    CHECK(finding.subject == mouse.device);
+    CHECK(finding.remedy == mouse.remedy);
+    mouse.may_open = true;
+    CHECK(diagnose_ports({{good_adapter(), mouse}, {"ModemManager"}}).empty());
+    CHECK(only_finding_of({mouse}).check == "presence"); // it replaces no glove
   }
 
   TEST_CASE("the command's exit code says whether something will not work") {
@@ -163,8 +189,10 @@ TEST_SUITE("doctor") {
     for (const char* const subject :
          {"programs that take ports", "real-time priority", "governors", "timers", "udev rules"})
       CHECK(text.out.find(subject, list) != std::string::npos);
-    for (const auto& candidate : nendo::driver::find_gloves())
+    for (const auto& candidate : nendo::driver::find_devices()) {
+      if (candidate.kind == DeviceKind::input_device && !candidate.identified) continue; // a mouse
       CHECK(text.out.find(candidate.device, list) != std::string::npos);
+    }
     CHECK(done.out.find("Checked: ") == std::string::npos);
   }
 }

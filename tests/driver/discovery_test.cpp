@@ -1,4 +1,4 @@
-// What find_gloves() says of emulated machines.
+// What find_devices() says of emulated machines.
 
 #include <algorithm>
 #include <filesystem>
@@ -25,9 +25,9 @@ using namespace std::chrono_literals;
 
 namespace {
 
-const GloveCandidate& at(const std::vector<GloveCandidate>& found, std::string_view device) {
+const DeviceCandidate& at(const std::vector<DeviceCandidate>& found, std::string_view device) {
   const auto candidate = std::find_if(found.begin(), found.end(),
-                                      [&](const GloveCandidate& c) { return c.device == device; });
+                                      [&](const DeviceCandidate& c) { return c.device == device; });
   REQUIRE_MESSAGE(candidate != found.end(), device);
   return *candidate;
 }
@@ -48,7 +48,7 @@ TEST_SUITE("discovery") {
     MockedMachine machine;
     machine.plug({});
     machine.plug(second_adapter());
-    const auto found = find_gloves();
+    const auto found = find_devices();
     REQUIRE(found.size() == 2);
     REQUIRE(found[0].usb);
     CHECK(found[0].device == "/dev/ttyUSB0");
@@ -71,18 +71,32 @@ TEST_SUITE("discovery") {
   TEST_CASE("of several links the one that survives longest becomes the specification") {
     MockedMachine machine;
     machine.plug({});
-    CHECK(find_gloves().at(0).spec == "serial:/dev/ttyUSB0");
+    CHECK(find_devices().at(0).spec == "serial:/dev/ttyUSB0");
     machine.link("serial/by-path/pci-0000:00:14.0-usb-0:2:1.0-port0", "ttyUSB0");
-    CHECK(find_gloves().at(0).spec ==
+    CHECK(find_devices().at(0).spec ==
           "serial:/dev/serial/by-path/pci-0000:00:14.0-usb-0:2:1.0-port0");
     machine.link("serial/by-id/usb-FTDI_A1-if00-port0", "ttyUSB0");
-    CHECK(find_gloves().at(0).spec == "serial:/dev/serial/by-id/usb-FTDI_A1-if00-port0");
-    CHECK_FALSE(find_gloves().at(0).identified);
+    CHECK(find_devices().at(0).spec == "serial:/dev/serial/by-id/usb-FTDI_A1-if00-port0");
+    CHECK_FALSE(find_devices().at(0).identified);
     machine.link("nendo/right", "ttyUSB0");
-    const auto found = find_gloves();
+    const auto found = find_devices();
     CHECK(found.at(0).spec == "serial:/dev/nendo/right");
     CHECK(found.at(0).stable_name == "/dev/nendo/right");
     CHECK(found.at(0).identified);
+  }
+
+  TEST_CASE("a port that is bound to a tracker is identified, and is no glove's") {
+    MockedMachine machine;
+    machine.plug({});
+    machine.plug(second_adapter());
+    machine.link("nendo/tracker", "ttyUSB1");
+    const auto found = find_devices();
+    REQUIRE(found.size() == 2);
+    CHECK(found[0].device == "/dev/ttyUSB1");
+    CHECK(found[0].identified);
+    CHECK(found[0].spec.empty());
+    CHECK(found[0].stable_name == "/dev/nendo/tracker");
+    CHECK_FALSE(found[1].identified);
   }
 
   TEST_CASE("adapters without a serial number of their own are named by their place") {
@@ -100,7 +114,7 @@ TEST_SUITE("discovery") {
     machine.link("serial/by-id/usb-FTDI_FT232R", "ttyUSB1");
     machine.link("serial/by-path/usb-0:2:1.0", "ttyUSB0");
     machine.link("serial/by-path/usb-0:3:1.0", "ttyUSB1");
-    const auto found = find_gloves();
+    const auto found = find_devices();
     CHECK(at(found, "/dev/ttyUSB0").spec == "serial:/dev/serial/by-path/usb-0:2:1.0");
     CHECK(at(found, "/dev/ttyUSB1").spec == "serial:/dev/serial/by-path/usb-0:3:1.0");
   }
@@ -110,7 +124,7 @@ TEST_SUITE("discovery") {
     machine.plug({});
     machine.link("serial/by-id/what?is=this", "ttyUSB0");
     machine.link("serial/by-path/a\nb", "ttyUSB0");
-    CHECK(find_gloves().at(0).spec == "serial:/dev/ttyUSB0");
+    CHECK(find_devices().at(0).spec == "serial:/dev/ttyUSB0");
   }
 
   TEST_CASE("neighbours are listed and never identified") {
@@ -143,7 +157,7 @@ TEST_SUITE("discovery") {
       neighbour.vendor_id = "1234";
     }
     machine.plug(neighbour);
-    const auto found = find_gloves();
+    const auto found = find_devices();
     REQUIRE(found.size() == 1);
     CHECK(found[0].spec == "serial:/dev/" + neighbour.port);
     CHECK_FALSE(found[0].identified);
@@ -158,7 +172,7 @@ TEST_SUITE("discovery") {
     machine.write("/sys/devices/pci0000:00/0000:00:14.0/usb1/1-2/product",
                   "CyberGlove\x1b[2J\xC2\x9B\n" + std::string(100'000, 'x'));
     machine.write("/sys/devices/pci0000:00/0000:00:14.0/usb1/1-2/serial", "");
-    const auto found = find_gloves();
+    const auto found = find_devices();
     REQUIRE(found.size() == 1);
     CHECK(found[0].description == "FTDI CyberGlove?[2J??");
   }
@@ -170,8 +184,8 @@ TEST_SUITE("discovery") {
     dongle.product = "CyberGlove look-alike dongle";
     dongle.driver = "btusb";
     machine.plug(dongle);
-    const auto found = find_gloves();
-    const GloveCandidate& port = at(found, "/dev/rfcomm0");
+    const auto found = find_devices();
+    const DeviceCandidate& port = at(found, "/dev/rfcomm0");
     CHECK_FALSE(port.usb);
     CHECK_FALSE(port.identified);
     CHECK(port.reason == "may be a glove: Bluetooth serial port");
@@ -190,7 +204,7 @@ TEST_SUITE("discovery") {
       glove.product_id = "0011";
     }
     machine.plug(glove);
-    const auto found = find_gloves();
+    const auto found = find_devices();
     REQUIRE(found.size() == 1);
     CHECK(found[0].kind == DeviceKind::usb_glove);
     CHECK(found[0].device == "/dev/bus/usb/001/005");
@@ -210,7 +224,7 @@ TEST_SUITE("discovery") {
     keyboard.vendor_id = "046d";
     keyboard.product_id = "c31c";
     machine.plug(keyboard);
-    const auto found = find_gloves();
+    const auto found = find_devices();
     REQUIRE(found.size() == 1);
     CHECK(found[0].kind == DeviceKind::portless_adapter);
     CHECK(found[0].spec.empty());
@@ -223,8 +237,8 @@ TEST_SUITE("discovery") {
     std::filesystem::remove(machine.real("/dev/ttyUSB0"));
     machine.write("/sys/devices/pci0000:00/0000:00:14.0/usb1/1-2/idVendor", "nonsense\n");
     std::filesystem::create_symlink("../../nowhere", machine.real("/sys/class/tty/ttyUSB7"));
-    const auto found = find_gloves();
-    const GloveCandidate& port = at(found, "/dev/ttyUSB0");
+    const auto found = find_devices();
+    const DeviceCandidate& port = at(found, "/dev/ttyUSB0");
     CHECK_FALSE(port.usb);
     CHECK_FALSE(port.may_open);
     CHECK(port.node_missing);
@@ -235,10 +249,10 @@ TEST_SUITE("discovery") {
   TEST_CASE("a port without a node is reported, with how to pass it into a container") {
     MockedMachine machine;
     machine.plug({});
-    CHECK_FALSE(at(find_gloves(), "/dev/ttyUSB0").node_missing);
+    CHECK_FALSE(at(find_devices(), "/dev/ttyUSB0").node_missing);
     std::filesystem::remove(machine.real("/dev/ttyUSB0"));
-    const auto found = find_gloves();
-    const GloveCandidate& port = at(found, "/dev/ttyUSB0");
+    const auto found = find_devices();
+    const DeviceCandidate& port = at(found, "/dev/ttyUSB0");
     CHECK(port.node_missing);
     CHECK_FALSE(port.may_open);
     CHECK(port.access.empty());
@@ -283,12 +297,12 @@ TEST_SUITE("discovery") {
     machine.plug({});
     const std::string file = MockedUsb().tty_path() + "/uevent";
     const std::string node = "MAJOR=188\nMINOR=0\nDEVNAME=ttyUSB0\n";
-    CHECK_FALSE(find_gloves().at(0).left_alone);
+    CHECK_FALSE(find_devices().at(0).left_alone);
     for (const std::string property : {"ID_MM_DEVICE_IGNORE", "ID_MM_PORT_IGNORE"}) {
       machine.write(file, node + property + "=1\n");
-      CHECK(find_gloves().at(0).left_alone);
+      CHECK(find_devices().at(0).left_alone);
       machine.write(file, node + property + "=0\n");
-      CHECK_FALSE(find_gloves().at(0).left_alone);
+      CHECK_FALSE(find_devices().at(0).left_alone);
     }
   }
 

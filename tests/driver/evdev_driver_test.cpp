@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 namespace {
 
 MockedInput mouse() {
-  return {7, "Optical Mouse", "0", "ff0000 0 0 0 0", "1943", "0"};
+  return {7, "Optical Mouse", "0", "ff0000 0 0 0 0", "1943", "0", "046d", "c077"};
 }
 MockedInput keyboard() {
   return {2, "Keyboard", "0", "1000000000007 ff9f207ac14057ff", "0", "0"};
@@ -93,9 +93,8 @@ TEST_SUITE("evdev_driver") {
     machine.plug(keyboard());
     machine.plug({});
     machine.plug(mouse());
+    machine.link("by-id/usb-3Dconnexion-event-joystick", {});
     const std::string link = "/dev/input/by-id/usb-3Dconnexion-event-joystick";
-    std::filesystem::create_directories(machine.real(link).parent_path());
-    std::filesystem::create_symlink("../event5", machine.real(link));
     for (const std::string& name :
          {std::string("spacenav"), std::string("/dev/input/event5"), link, std::string("event5")}) {
       const auto opened = required(open_trackers(std::array{"evdev:" + name + "?speed=0.5"}));
@@ -184,12 +183,17 @@ TEST_SUITE("evdev_driver") {
   TEST_CASE("a device that only others may open is an error that says what to do") {
     MockedInputs machine;
     machine.plug({});
-    const auto node = machine.real("/dev/input/event5");
-    std::filesystem::permissions(node, std::filesystem::perms::none);
-    if (::access(node.c_str(), R_OK) == 0) return; // root may open everything
-    const std::string message = error_of("evdev:SpaceNavigator", Errc::no_permission);
+    machine.plug(mouse());
+    for (const MockedInput& input : {MockedInput{}, mouse()}) {
+      const auto node = machine.real(input.node());
+      std::filesystem::permissions(node, std::filesystem::perms::none);
+      if (::access(node.c_str(), R_OK) == 0) return; // root may open everything
+    }
+    CHECK(error_of("evdev:SpaceNavigator", Errc::no_permission).find("nendo udev install") !=
+          std::string::npos);
+    const std::string message = error_of("evdev:Optical Mouse", Errc::no_permission);
     CHECK(message.find("TAG+=\"uaccess\"") != std::string::npos);
-    CHECK(message.find("ATTRS{id/product}==\"c626\"") != std::string::npos);
+    CHECK(message.find("ATTRS{id/product}==\"c077\"") != std::string::npos);
   }
 }
 

@@ -125,7 +125,7 @@ TEST_SUITE("serialport") {
 
   TEST_CASE("an adapter that anything may hang on is listed, and auto leaves it alone") {
     const MockedAdapter adapter("FT232R USB UART");
-    const auto found = find_gloves();
+    const auto found = find_devices();
     REQUIRE(found.size() == 1);
     CHECK(found[0].spec == "serial:/dev/ttyUSB0");
     CHECK_FALSE(found[0].identified);
@@ -143,7 +143,7 @@ TEST_SUITE("serialport") {
     Script script;
     script.right = false;
     const MockedAdapter adapter("CyberGlove III", "", script);
-    const auto found = find_gloves();
+    const auto found = find_devices();
     REQUIRE(found.size() == 1);
     CHECK(found[0].identified);
     CHECK(open_glove("auto:left"));
@@ -162,7 +162,7 @@ TEST_SUITE("serialport") {
 
   TEST_CASE("a port that a udev rule names is identified by its link") {
     const MockedAdapter adapter("FT232R USB UART", "nendo/right");
-    const auto found = find_gloves();
+    const auto found = find_devices();
     REQUIRE(found.size() == 1);
     CHECK(found[0].identified);
     CHECK(found[0].spec == "serial:/dev/nendo/right");

@@ -28,6 +28,8 @@ struct MockedInput {
   std::string keys = "3 0 0 0 0"; ///< with words of 64 bits
   std::string relative = "0";
   std::string absolute = "3f";
+  std::string vendor_id = "046d";
+  std::string product_id = "c626";
 
   std::string node() const { return "/dev/input/event" + std::to_string(number); }
   std::string parent() const { return "/devices/virtual/input/input" + std::to_string(number); }
@@ -57,7 +59,8 @@ public:
         "\\n\nA: properties=" + input.properties + "\\n\nA: capabilities/key=" + input.keys +
         "\\n\nA: capabilities/rel=" + input.relative +
         "\\n\nA: capabilities/abs=" + input.absolute +
-        "\\n\nA: id/vendor=046d\\n\nA: id/product=c626\\n\n\nP: " + input.parent() + "/event" +
+        "\\n\nA: id/bustype=0003\\n\nA: id/vendor=" + input.vendor_id +
+        "\\n\nA: id/product=" + input.product_id + "\\n\n\nP: " + input.parent() + "/event" +
         std::to_string(input.number) + "\nE: DEVNAME=" + node +
         "\nE: SUBSYSTEM=input\nL: device=../../input" + std::to_string(input.number) + "\n";
     const bool added = umockdev_testbed_add_from_string(testbed_.get(), text.c_str(), &error) != 0;
@@ -79,6 +82,12 @@ public:
     for (const input_event& event : {event_of(type, code, value), event_of(EV_SYN, SYN_REPORT, 0)})
       REQUIRE(::write(terminals_.at(input.number).master.get(), &event, sizeof event) ==
               sizeof event);
+  }
+  /// Makes a link, e.g. "by-id/usb-X-event-mouse", as udev does.
+  void link(const std::string& name, const MockedInput& input) const {
+    const auto link = real("/dev/input/" + name);
+    std::filesystem::create_directories(link.parent_path());
+    std::filesystem::create_symlink("../event" + std::to_string(input.number), link);
   }
   std::filesystem::path real(const std::string& path) const {
     const std::unique_ptr<gchar, decltype(&g_free)> root(

@@ -32,9 +32,11 @@ Result<void> wait_for_sample(OpenHand& hand, const std::function<bool()>& is_sto
 
 /// Notes why gloves that are plugged in do not take part.
 void note_silent(const std::vector<std::string>& why, std::size_t opened, const Note& note) {
-  const auto candidates = driver::find_gloves();
-  const auto plugged_in = std::count_if(candidates.begin(), candidates.end(),
-                                        [](const auto& c) { return c.identified; });
+  const auto candidates = driver::find_devices();
+  const auto plugged_in =
+      std::count_if(candidates.begin(), candidates.end(), [](const auto& candidate) {
+        return candidate.identified && !candidate.spec.empty();
+      });
   if (static_cast<std::size_t>(plugged_in) <= opened) return;
   for (const auto& reason : why)
     note(reason);

@@ -29,7 +29,7 @@ Result<std::unique_ptr<Glove>> open_auto(const DeviceSpec& spec, std::optional<S
   const HostTime deadline = HostClock::now() + 4500ms;
   std::string why;
   Errc code = Errc::no_device;
-  for (const GloveCandidate& candidate : list_candidates()) {
+  for (const DeviceCandidate& candidate : list_candidates()) {
     if (!candidate.identified || candidate.spec.empty()) continue;
     const auto parsed = parse_device_spec(candidate.spec);
     if (!parsed || HostClock::now() >= deadline) continue;

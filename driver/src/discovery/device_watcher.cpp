@@ -35,8 +35,9 @@ constexpr auto settling_look = 100ms;
 
 /// Returns what makes it this device and no other: if another device takes over the name, it is a
 /// departure and an arrival.
-std::string key_of(const GloveCandidate& candidate) {
+std::string key_of(const DeviceCandidate& candidate) {
   std::string key = candidate.device + '|' + std::string(name_of(candidate.kind));
+  if (candidate.kind == DeviceKind::input_device) key += '|' + candidate.description;
   if (candidate.usb) {
     key += '|' + std::to_string(candidate.usb->bus) + '|' + std::to_string(candidate.usb->address);
   }
@@ -52,21 +53,33 @@ UdevMonitor watch_devices(::udev* context) {
   if (!monitor) return nullptr;
   udev_monitor_filter_add_match_subsystem_devtype(monitor.get(), "usb", "usb_device");
   udev_monitor_filter_add_match_subsystem_devtype(monitor.get(), "tty", nullptr);
+  udev_monitor_filter_add_match_subsystem_devtype(monitor.get(), "input", nullptr);
   return udev_monitor_enable_receiving(monitor.get()) >= 0 ? std::move(monitor) : nullptr;
+}
+
+bool watch_folder(const UniqueFd& nodes, const char* folder) noexcept {
+  return ::inotify_add_watch(nodes.get(), folder,
+                             IN_CREATE | IN_DELETE | IN_MOVED_TO | IN_MOVED_FROM) >= 0;
+}
+/// It is missing while there is no input device, so this is called again and again. A second watch
+/// of the same folder changes nothing.
+void watch_inputs(const UniqueFd& nodes) noexcept {
+  watch_folder(nodes, "/dev/input/");
 }
 
 class EventWatcher final : public DeviceWatcher {
 public:
   EventWatcher(UniqueFd nodes, UniqueFd stop_event)
       : nodes_(std::move(nodes)), stop_event_(std::move(stop_event)) {
+    watch_inputs(nodes_);
     // Listed after it began to watch: what arrives between the two is announced, or was there.
     present_ = list_candidates();
     add_holders(present_);
-    for (const GloveCandidate& candidate : present_)
+    for (const DeviceCandidate& candidate : present_)
       known_.emplace(key_of(candidate), candidate);
   }
 
-  const std::vector<GloveCandidate>& present() const noexcept override { return present_; }
+  const std::vector<DeviceCandidate>& present() const noexcept override { return present_; }
   bool sees_usb() const noexcept override { return monitor_ != nullptr; }
   std::optional<DeviceEvent> next(std::chrono::milliseconds timeout) override {
     const HostTime deadline = HostClock::now() + timeout;
@@ -115,8 +128,9 @@ private:
 
   /// Announces the differences between what is there and what was.
   void look() {
-    std::map<std::string, GloveCandidate> there;
-    for (GloveCandidate& candidate : list_candidates())
+    watch_inputs(nodes_);
+    std::map<std::string, DeviceCandidate> there;
+    for (DeviceCandidate& candidate : list_candidates())
       there.emplace(key_of(candidate), std::move(candidate));
     for (auto at = known_.begin(); at != known_.end();) {
       const bool gone = !there.contains(at->first);
@@ -137,13 +151,14 @@ private:
 
   const UdevContext context_{udev_new()};
   const UdevMonitor monitor_ = watch_devices(context_.get());
-  const UniqueFd nodes_; ///< inotify, on /dev: containers may get the nodes alone, without events
+  /// inotify, on /dev and /dev/input: containers may get the nodes alone, without events.
+  const UniqueFd nodes_;
   const UniqueFd stop_event_; ///< readable once stop() was called
   std::atomic<bool> stopped_{false};
-  std::vector<GloveCandidate> present_;
-  std::map<std::string, GloveCandidate> known_; ///< announced, by key
-  std::map<std::string, HostTime> arriving_;    ///< not announced yet; since when it was seen
-  HostTime look_until_{};                       ///< something changed shortly before
+  std::vector<DeviceCandidate> present_;
+  std::map<std::string, DeviceCandidate> known_; ///< announced, by key
+  std::map<std::string, HostTime> arriving_;     ///< not announced yet; since when it was seen
+  HostTime look_until_{};                        ///< something changed shortly before
   std::deque<DeviceEvent> events_;
 };
 
@@ -158,9 +173,7 @@ Result<std::unique_ptr<DeviceWatcher>> DeviceWatcher::open() {
                                    "fs.inotify.max_user_instances (sysctl)"};
   };
   if (!nodes.is_open() || !stop_event.is_open()) return fail("devices cannot be watched");
-  if (::inotify_add_watch(nodes.get(), "/dev/",
-                          IN_CREATE | IN_DELETE | IN_MOVED_TO | IN_MOVED_FROM) < 0)
-    return fail("/dev cannot be watched");
+  if (!watch_folder(nodes, "/dev/")) return fail("/dev cannot be watched");
   return std::unique_ptr<DeviceWatcher>(
       std::make_unique<EventWatcher>(std::move(nodes), std::move(stop_event)));
 }

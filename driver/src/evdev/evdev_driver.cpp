@@ -22,7 +22,6 @@
 #include "stream/listen.hpp"
 #include "stream/stream_tracker.hpp"
 #include "transport/open_transport.hpp"
-#include "transport/port_access.hpp"
 
 namespace nendo::driver::evdev {
 namespace {
@@ -34,15 +33,9 @@ constexpr HostClock::duration moving_period = 8'333'333ns;
 constexpr HostClock::duration resting_period = 25ms; ///< far below the time after which it is lost
 
 Error permission_error(const InputDevice& device) {
-  const PortAccess access = refused_access(device.node);
-  return {Errc::no_permission,
-          device.node + " (" + device.name + "): only " + access.who + " may open it; " +
-              access.remedy +
-              "; or, for this device alone, put this line into "
-              "/etc/udev/rules.d/61-wrist.rules and plug it in again: SUBSYSTEM==\"input\", "
-              "KERNEL==\"event*\", ATTRS{id/vendor}==\"" +
-              device.vendor_id + "\", ATTRS{id/product}==\"" + device.product_id +
-              "\", TAG+=\"uaccess\""};
+  const PortAccess access = refused_input(device);
+  return {Errc::no_permission, device.node + " (" + device.name + "): only " + access.who +
+                                   " may open it; " + access.remedy};
 }
 
 /// The input device that a specification names, and its open node. The transport that open()

@@ -9,10 +9,14 @@
 #include <utility>
 
 #include <linux/input.h>
+#include <unistd.h>
 
+#include <nendo/base/advised_command.hpp>
 #include <nendo/base/endings.hpp>
 #include <nendo/base/number_in.hpp>
 #include <nendo/base/text.hpp>
+#include <nendo/driver/device_spec.hpp>
+#include <nendo/udev/device_table.hpp>
 
 #include "transport/open_transport.hpp"
 #include "transport/sysfs.hpp"
@@ -72,6 +76,7 @@ std::optional<InputDevice> device_at(const std::string& node) {
                      read_line(folder / "name"),
                      read_line(folder / "id/vendor"),
                      read_line(folder / "id/product"),
+                     read_line(folder / "id/bustype") == "0003", // BUS_USB
                      *kind,
                      first_button_of(read.keys)};
 }
@@ -91,7 +96,7 @@ std::string existing() {
 }
 
 Result<InputDevice> find_by_path(const std::string& path) {
-  const fs::path node(follow_links(path, is_node));
+  const fs::path node(resolve_input(path));
   if (!is_node(node.string()))
     return Error{Errc::no_device, path + ": no such input device; " + existing()};
   auto device = device_at(node.filename().string());
@@ -166,6 +171,47 @@ Result<InputDevice> find_input_device(const std::string& name) {
   return Error{Errc::usage, in_quotes(name) +
                                 " is in the names of several devices; give the path of " +
                                 "one: " + in_words(devices)};
+}
+
+std::string name_to_type(const InputDevice& device, const std::vector<InputDevice>& devices,
+                         const std::string& link) {
+  const std::string& name = device.name;
+  const auto has_this_name = [&](const InputDevice& other) { return other.name == name; };
+  const auto spec = parse_device_spec("evdev:" + name);
+  const bool is_path = name.starts_with('/') || number_of_node(name);
+  const bool is_usable = spec && spec->target == name && !name.empty() && !is_path &&
+                         std::count_if(devices.begin(), devices.end(), has_this_name) == 1;
+  return is_usable ? name : link.empty() ? device.node : link;
+}
+
+std::string resolve_input(const std::string& path) {
+  return follow_links(path, is_node);
+}
+
+bool is_space_mouse(const InputDevice& device) noexcept {
+  const bool has_six_axes =
+      device.kind == InputKind::six_absolute || device.kind == InputKind::six_relative;
+  return has_six_axes && udev::numbers_a_space_mouse(device.vendor_id, device.product_id);
+}
+
+PortAccess input_access(const InputDevice& device) {
+  if (::access(device.node.c_str(), R_OK) == 0) return {true, "you", ""};
+  return refused_input(device);
+}
+
+PortAccess refused_input(const InputDevice& device) {
+  PortAccess access = refused_access(device.node);
+  if (access.who.empty()) return access; // it has no node
+  if (is_space_mouse(device)) {
+    access.remedy = as_root("udev install") + " for the user at the screen; or " + access.remedy;
+  } else {
+    access.remedy += "; or, for this device alone, put this line into "
+                     "/etc/udev/rules.d/61-wrist.rules and plug it in again: SUBSYSTEM==\"input\", "
+                     "KERNEL==\"event*\", ATTRS{id/vendor}==\"" +
+                     device.vendor_id + "\", ATTRS{id/product}==\"" + device.product_id +
+                     "\", TAG+=\"uaccess\"";
+  }
+  return access;
 }
 
 } // namespace nendo::driver::evdev

@@ -10,6 +10,8 @@
 
 #include <nendo/base/result.hpp>
 
+#include "transport/port_access.hpp"
+
 namespace nendo::driver::evdev {
 
 /// What a device's axes mean (linux/input-event-codes.h; Documentation/input/gamepad.rst).
@@ -27,6 +29,7 @@ struct InputDevice {
   std::string node;                  ///< e.g. /dev/input/event5
   std::string name;                  ///< its own, printable
   std::string vendor_id, product_id; ///< four hexadecimal digits each
+  bool is_usb = false;               ///< plugged in; false: Bluetooth, built in
   InputKind kind = InputKind::mouse;
   std::uint16_t first_button = 0; ///< the lowest BTN_ code; 0 if it has no button
 };
@@ -47,5 +50,17 @@ std::vector<InputDevice> list_input_devices();
 /// (event5), or a part of the device's name that no other device has, in upper or lower case.
 /// Errors: no_device, usage (empty, or several devices); both list the devices that there are.
 Result<InputDevice> find_input_device(const std::string& name);
+/// Returns what find_input_device() takes for this one of `devices`: its name, if no other device
+/// has it and a specification can express it; else `link`, or its node if `link` is empty.
+std::string name_to_type(const InputDevice& device, const std::vector<InputDevice>& devices,
+                         const std::string& link);
+/// Follows links to the node of an input device. Returns a path that leads nowhere unchanged.
+std::string resolve_input(const std::string& path);
+
+bool is_space_mouse(const InputDevice& device) noexcept;
+/// Returns who may read the device's events, and the remedy if this user may not.
+PortAccess input_access(const InputDevice& device);
+/// Returns the same for a device that could not be opened, independent of its mode.
+PortAccess refused_input(const InputDevice& device);
 
 } // namespace nendo::driver::evdev

@@ -47,7 +47,7 @@ public:
     auto transport = open_transport(adapter_ ? *port : path_, baud_);
     if (!transport) return transport;
     // While it is open the kernel gives its name to no other port, so this adapter was opened.
-    const auto opened = usb_identity_of_port(*port);
+    const auto opened = usb_identity_of("tty", *port);
     if (adapter_ && !(opened && is_adapter(*opened))) return Error{Errc::no_device, gone()};
     if (!adapter_ && opened) remember(*opened);
     shorten_latency(*port);

@@ -69,14 +69,16 @@ std::optional<std::string> kernel_number(const std::string& path) {
     constexpr unsigned devices_per_bus = 128;
     return "c 189 " + std::to_string((bus - 1) * devices_per_bus + address - 1);
   }
-  const fs::path port(path);
-  if (port.parent_path() != "/dev" || !port.has_filename()) return std::nullopt;
-  std::string number = read_line("/sys/class/tty" / port.filename() / "dev");
+  const fs::path node(path);
+  const bool is_input = node.parent_path() == "/dev/input";
+  if ((node.parent_path() != "/dev" && !is_input) || !node.has_filename()) return std::nullopt;
+  const fs::path entry =
+      fs::path(is_input ? "/sys/class/input" : "/sys/class/tty") / node.filename();
+  std::string number = read_line(entry / "dev");
   const std::size_t colon = number.find(':');
   std::error_code ignored;
   if (colon == std::string::npos)
-    return fs::exists("/sys/class/tty" / port.filename(), ignored) ? std::optional<std::string>("")
-                                                                   : std::nullopt;
+    return fs::exists(entry, ignored) ? std::optional<std::string>("") : std::nullopt;
   number[colon] = ' ';
   return "c " + number;
 }

@@ -20,9 +20,9 @@ PortAccess port_access(const std::string& path);
 /// Returns the same for a device that could not be opened, independent of its mode.
 PortAccess refused_access(const std::string& path);
 
-/// Returns the remedy if the kernel has the serial port or USB device `path` (/dev/ttyUSB0,
-/// /dev/bus/usb/001/005) and there is no node for it; otherwise nothing. Files below `root` show
-/// the kind of container. Opens no device.
+/// Returns the remedy if the kernel has the serial port, USB device or input device `path`
+/// (/dev/ttyUSB0, /dev/bus/usb/001/005, /dev/input/event5) and there is no node for it; otherwise
+/// nothing. Files below `root` show the kind of container. Opens no device.
 std::optional<std::string> missing_node(const std::string& path,
                                         const std::filesystem::path& root = "/");
 

@@ -48,18 +48,11 @@ std::vector<SerialPortInfo> list_serial_ports() {
     info.path = "/dev/" + name;
     info.bluetooth = name.starts_with("rfcomm");
     info.left_alone = has_flag(*tty, "ID_MM_DEVICE_IGNORE") || has_flag(*tty, "ID_MM_PORT_IGNORE");
-    info.usb = usb_identity_of_port(info.path);
+    info.usb = usb_identity_of("tty", info.path);
     found.push_back(std::move(info));
   }
   std::sort(found.begin(), found.end(), by_name_and_number);
   return found;
-}
-
-bool udev_is_done_with(const std::string& port) {
-  std::error_code failed;
-  if (!fs::exists("/run/udev/data", failed)) return true; // udev does not run here
-  const UdevDevice tty = find_udev_device("tty", fs::path(port).filename().string());
-  return !tty || udev_device_get_is_initialized(tty.get()) != 0;
 }
 
 std::optional<milliseconds> ftdi_latency_timer(const std::string& port) {

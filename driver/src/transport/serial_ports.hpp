@@ -22,9 +22,6 @@ struct SerialPortInfo {
 /// Returns the ports, sorted by name, numbers as numbers. Nothing is opened.
 std::vector<SerialPortInfo> list_serial_ports();
 
-/// Returns false while udev's rules still run for the port, e.g. /dev/ttyUSB0.
-bool udev_is_done_with(const std::string& port);
-
 // FTDI adapters hold back replies that are shorter than a packet, for 16 ms by default. That is too
 // long for a glove that is queried for each record at 100 Hz, and it adds jitter to a stream.
 

@@ -1,6 +1,8 @@
 #include "transport/udev_devices.hpp"
 
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 
 #include <nendo/base/number_in.hpp>
 
@@ -38,6 +40,14 @@ std::vector<UdevDevice> list_udev_devices(const char* subsystem) {
 UdevDevice find_udev_device(const char* subsystem, const std::string& name) {
   return UdevDevice(
       udev_device_new_from_subsystem_sysname(this_threads_udev(), subsystem, name.c_str()));
+}
+
+bool udev_is_done_with(const char* subsystem, const std::string& node) {
+  std::error_code failed;
+  if (!std::filesystem::exists("/run/udev/data", failed)) return true; // udev does not run here
+  const auto name = std::filesystem::path(node).filename().string();
+  const UdevDevice device = find_udev_device(subsystem, name);
+  return !device || udev_device_get_is_initialized(device.get()) != 0;
 }
 
 std::string attribute_of(udev_device& device, const char* name) {

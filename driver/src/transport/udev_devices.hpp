@@ -27,6 +27,9 @@ std::vector<UdevDevice> list_udev_devices(const char* subsystem);
 /// none.
 UdevDevice find_udev_device(const char* subsystem, const std::string& name);
 
+/// Returns false while udev's rules still run for the device with this node, e.g. /dev/ttyUSB0.
+bool udev_is_done_with(const char* subsystem, const std::string& node);
+
 /// Returns the first line of an attribute, printable; an empty text if the device has no such
 /// attribute.
 std::string attribute_of(udev_device& device, const char* name);

@@ -33,26 +33,28 @@ std::optional<UsbIdentity> identity_of(udev_device& device) {
 }
 
 /// Reads a number from the nearest parent of a kind; nullopt if there is none.
-std::optional<unsigned> number_of_parent(udev_device& port, const char* subsystem, const char* type,
-                                         const char* name, int base) {
-  udev_device* const parent = udev_device_get_parent_with_subsystem_devtype(&port, subsystem, type);
+std::optional<unsigned> number_of_parent(udev_device& child, const char* subsystem,
+                                         const char* type, const char* name, int base) {
+  udev_device* const parent =
+      udev_device_get_parent_with_subsystem_devtype(&child, subsystem, type);
   return parent != nullptr ? number_of(*parent, name, base) : std::nullopt;
 }
 
 } // namespace
 
-std::optional<UsbIdentity> usb_identity_of_port(const std::string& port) {
-  const std::string name = std::filesystem::path(port).filename().string();
+std::optional<UsbIdentity> usb_identity_of(const char* subsystem, const std::string& node) {
+  const std::string name = std::filesystem::path(node).filename().string();
   // A connected rfcomm port is a child of the computer's own Bluetooth dongle.
   if (name.starts_with("rfcomm")) return std::nullopt;
-  const UdevDevice tty = find_udev_device("tty", name);
-  udev_device* const adapter =
-      tty ? udev_device_get_parent_with_subsystem_devtype(tty.get(), "usb", usb_device) : nullptr;
-  auto usb = adapter != nullptr ? identity_of(*adapter) : std::nullopt;
+  const UdevDevice child = find_udev_device(subsystem, name);
+  udev_device* const parent =
+      child ? udev_device_get_parent_with_subsystem_devtype(child.get(), "usb", usb_device)
+            : nullptr;
+  auto usb = parent != nullptr ? identity_of(*parent) : std::nullopt;
   if (!usb) return std::nullopt;
-  const auto interface = number_of_parent(*tty, "usb", "usb_interface", "bInterfaceNumber", 16);
+  const auto interface = number_of_parent(*child, "usb", "usb_interface", "bInterfaceNumber", 16);
   if (interface) usb->interface_number = static_cast<int>(*interface & 0xFFU);
-  const auto number = number_of_parent(*tty, "usb-serial", nullptr, "port_number", 10);
+  const auto number = number_of_parent(*child, "usb-serial", nullptr, "port_number", 10);
   usb->port_number = static_cast<int>(number.value_or(0) & 0xFFU);
   return usb;
 }

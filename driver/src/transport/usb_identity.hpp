@@ -19,9 +19,10 @@ using udev::id_of;
 using udev::to_string;
 using udev::UsbId;
 
-/// Returns the adapter of a serial port, e.g. /dev/ttyUSB0; nullopt if it has none: a UART, a
+/// Returns the USB device that has this node: the adapter of a serial port ("tty", /dev/ttyUSB0),
+/// or an input device ("input", /dev/input/event5). Returns nullopt if there is none: a UART, a
 /// pseudo-terminal, Bluetooth. Links are not followed.
-std::optional<UsbIdentity> usb_identity_of_port(const std::string& port);
+std::optional<UsbIdentity> usb_identity_of(const char* subsystem, const std::string& node);
 
 /// Returns all USB devices; none on a machine without USB.
 std::vector<UsbIdentity> list_usb_devices();

@@ -1,5 +1,5 @@
 #pragma once
-// Reports gloves and possible glove ports as they are attached and detached.
+// Reports possible gloves and trackers as they are attached and detached.
 
 #include <chrono>
 #include <memory>
@@ -13,7 +13,7 @@ namespace nendo::driver {
 
 struct DeviceEvent {
   bool attached = true; ///< false: detached
-  GloveCandidate candidate;
+  DeviceCandidate candidate;
 };
 
 /// Has no thread of its own: next() waits for events of the system. No event is lost between two
@@ -29,10 +29,10 @@ public:
   virtual ~DeviceWatcher() = default;
 
   /// Returns the devices that were present at open(). Constant.
-  virtual const std::vector<GloveCandidate>& present() const noexcept = 0;
+  virtual const std::vector<DeviceCandidate>& present() const noexcept = 0;
   /// Returns true if USB events are available, from udev or, without udev, from the kernel.
-  /// Otherwise only the nodes in /dev are watched, and a USB glove without a serial port is not
-  /// detected. Some containers receive no events although this returns true.
+  /// Otherwise only the nodes in /dev and /dev/input are watched, and a USB glove without a serial
+  /// port is not detected. Some containers receive no events although this returns true.
   virtual bool sees_usb() const noexcept = 0;
   /// Waits for the next event and returns it; returns nullopt after `timeout`, after stop(), and on
   /// a signal. An attached device is reported when its node and links exist, or after 2 s.

@@ -1,6 +1,6 @@
 #pragma once
-// Finds devices that may be gloves, and the reasons why this user cannot use them. No device is
-// opened or written to: the data come from libudev, /dev and /proc.
+// Finds devices that may be gloves or trackers, and the reasons why this user cannot use them. No
+// device is opened or written to: the data come from libudev, /dev, /sys and /proc.
 
 #include <chrono>
 #include <cstdint>
@@ -26,26 +26,32 @@ enum class DeviceKind : std::uint8_t {
   serial_port,
   usb_glove,        ///< a glove that is itself a USB device
   portless_adapter, ///< a USB-serial adapter for which the kernel made no port
+  input_device,     ///< a SpaceMouse, a gamepad or a mouse, which can be a tracker
 };
 
 constexpr std::string_view name_of(DeviceKind kind) noexcept {
-  constexpr std::string_view names[]{"serial_port", "usb_glove", "portless_adapter"};
+  constexpr std::string_view names[]{"serial_port", "usb_glove", "portless_adapter",
+                                     "input_device"};
   return names[static_cast<std::size_t>(kind)];
 }
 
-/// A port or USB device that may be a glove.
-struct GloveCandidate {
+/// A port or device that may be a glove or a tracker.
+struct DeviceCandidate {
   DeviceKind kind = DeviceKind::serial_port;
-  std::string device; ///< e.g. /dev/ttyUSB0 or /dev/bus/usb/001/005
+  std::string device; ///< e.g. /dev/ttyUSB0, /dev/bus/usb/001/005 or /dev/input/event5
   /// The udev symlink, which stays the same after a reconnect; empty if there is none.
   std::string stable_name;
   /// The argument for open_glove(), with the stable name if there is one; empty if no driver fits.
   std::string spec;
+  /// The argument for open_trackers() of an input device; empty for others, since a serial port
+  /// does not show which tracker is behind it.
+  std::string tracker_spec;
   std::string description; ///< the device's own description
-  std::string reason;      ///< why it may be a glove
-  bool identified = false; ///< the device or a udev rule identifies a glove; `auto` requires it
-  bool may_open = false;   ///< this user has permission
-  std::string access; ///< who may open it: "you", "group dialout", "user anna", "root"; or empty
+  std::string reason;      ///< why it may be a glove or a tracker
+  /// The device or a udev rule identifies a glove or a tracker; `auto` requires it.
+  bool identified = false;
+  bool may_open = false; ///< this user has permission
+  std::string access;    ///< who may open it: "you", "group dialout", "user anna", "root"; or empty
   bool node_missing = false; ///< the kernel has it but /dev has no node, as in a container
   std::string remedy;        ///< the command or action that makes it usable; empty if may_open
   std::optional<UsbIdentity> usb;
@@ -56,9 +62,10 @@ struct GloveCandidate {
   bool holders_complete = false; ///< false: some processes could not be inspected
 };
 
-/// Returns the serial ports and USB gloves, one entry per device, identified gloves first. A device
-/// that is removed meanwhile is omitted. Blocks for less than a second.
-NENDO_API std::vector<GloveCandidate> find_gloves();
+/// Returns the serial ports, USB gloves, and the input devices that can be trackers, one entry per
+/// device, identified ones first. A device that is removed meanwhile is omitted. Blocks for less
+/// than a second.
+NENDO_API std::vector<DeviceCandidate> find_devices();
 
 /// Follows symbolic links, e.g. /dev/nendo/right to /dev/ttyUSB0, up to a name that the kernel
 /// knows as a serial port. A path that leads nowhere is returned unchanged. Reads the file system;

@@ -14,6 +14,7 @@
 #include "transport/port_access.hpp"
 #include "transport/serial_ports.hpp"
 #include "transport/sysfs.hpp"
+#include "transport/udev_devices.hpp"
 #include "transport/usb_identity.hpp"
 
 namespace nendo::driver {
@@ -31,12 +32,8 @@ std::string describe(const UsbIdentity& usb) {
               usb.serial.empty() ? "" : "(serial number " + usb.serial + ")");
 }
 
-void check_access(GloveCandidate& candidate) {
-  PortAccess access = port_access(candidate.device);
-  candidate.may_open = access.granted;
-  candidate.access = std::move(access.who);
-  candidate.node_missing = access.node_missing;
-  candidate.remedy = std::move(access.remedy);
+void check_access(DeviceCandidate& candidate) {
+  set_access(candidate, port_access(candidate.device));
 }
 
 /// A serial number that two adapters share names neither: udev's link goes to the one that came
@@ -93,9 +90,9 @@ std::map<std::string, PortLinks> find_port_links() {
   return links;
 }
 
-GloveCandidate candidate_of_port(const SerialPortInfo& port, const PortLinks& links,
-                                 bool own_serial) {
-  GloveCandidate candidate;
+DeviceCandidate candidate_of_port(const SerialPortInfo& port, const PortLinks& links,
+                                  bool own_serial) {
+  DeviceCandidate candidate;
   candidate.device = port.path;
   candidate.usb = port.usb;
   candidate.description = port.usb         ? describe(*port.usb)
@@ -111,6 +108,7 @@ GloveCandidate candidate_of_port(const SerialPortInfo& port, const PortLinks& li
   }
   if (links.nendo == tracker_link) {
     candidate.reason = "a udev rule says that a tracker is there, not a glove";
+    candidate.identified = true;
     candidate.spec.clear();
   } else if (!links.nendo.empty()) {
     candidate.reason = "a udev rule names it " + links.nendo;
@@ -127,8 +125,8 @@ GloveCandidate candidate_of_port(const SerialPortInfo& port, const PortLinks& li
   return candidate;
 }
 
-GloveCandidate start_usb(const UsbIdentity& device, DeviceKind kind) {
-  GloveCandidate candidate;
+DeviceCandidate start_usb(const UsbIdentity& device, DeviceKind kind) {
+  DeviceCandidate candidate;
   candidate.kind = kind;
   candidate.device = node_of(device);
   candidate.usb = device;
@@ -136,8 +134,8 @@ GloveCandidate start_usb(const UsbIdentity& device, DeviceKind kind) {
   return candidate;
 }
 
-GloveCandidate candidate_of_usb_glove(const UsbIdentity& device, std::string_view name) {
-  GloveCandidate candidate = start_usb(device, DeviceKind::usb_glove);
+DeviceCandidate candidate_of_usb_glove(const UsbIdentity& device, std::string_view name) {
+  DeviceCandidate candidate = start_usb(device, DeviceKind::usb_glove);
   candidate.description = name;
   candidate.reason = "its USB number is that of a glove";
   candidate.identified = true;
@@ -145,8 +143,8 @@ GloveCandidate candidate_of_usb_glove(const UsbIdentity& device, std::string_vie
   return candidate;
 }
 
-GloveCandidate candidate_of_portless(const UsbIdentity& device, const udev::UsbAdapter& adapter) {
-  GloveCandidate candidate = start_usb(device, DeviceKind::portless_adapter);
+DeviceCandidate candidate_of_portless(const UsbIdentity& device, const udev::UsbAdapter& adapter) {
+  DeviceCandidate candidate = start_usb(device, DeviceKind::portless_adapter);
   candidate.description = describe(*candidate.usb);
   candidate.reason = "a USB-serial adapter (" + std::string(adapter.maker) +
                      ") without a serial port: its kernel driver is missing, or brltty took it";
@@ -156,8 +154,15 @@ GloveCandidate candidate_of_portless(const UsbIdentity& device, const udev::UsbA
 
 } // namespace
 
-std::vector<GloveCandidate> list_candidates() {
-  std::vector<GloveCandidate> found;
+void set_access(DeviceCandidate& candidate, PortAccess access) {
+  candidate.may_open = access.granted;
+  candidate.access = std::move(access.who);
+  candidate.node_missing = access.node_missing;
+  candidate.remedy = std::move(access.remedy);
+}
+
+std::vector<DeviceCandidate> list_candidates() {
+  std::vector<DeviceCandidate> found;
   const std::vector<SerialPortInfo> ports = list_serial_ports();
   const auto links = find_port_links();
   std::set<std::pair<unsigned, unsigned>> with_port;
@@ -177,32 +182,35 @@ std::vector<GloveCandidate> list_candidates() {
       found.push_back(candidate_of_portless(device, *adapter));
     }
   }
+  for (DeviceCandidate& input : list_input_candidates())
+    found.push_back(std::move(input));
   std::stable_partition(found.begin(), found.end(),
-                        [](const GloveCandidate& candidate) { return candidate.identified; });
+                        [](const DeviceCandidate& candidate) { return candidate.identified; });
   return found;
 }
 
-void add_holders(std::vector<GloveCandidate>& candidates) {
+void add_holders(std::vector<DeviceCandidate>& candidates) {
   std::set<std::string> devices;
-  for (const GloveCandidate& candidate : candidates)
+  for (const DeviceCandidate& candidate : candidates)
     devices.insert(candidate.device);
   Holders holders = find_holders(devices);
-  for (GloveCandidate& candidate : candidates) {
+  for (DeviceCandidate& candidate : candidates) {
     candidate.holders = std::move(holders.of[candidate.device]);
     candidate.holders_complete = holders.complete;
   }
 }
 
-bool is_settled(const GloveCandidate& candidate) {
+bool is_settled(const DeviceCandidate& candidate) {
   std::error_code failed;
   if (candidate.kind == DeviceKind::portless_adapter) return false; // its port may yet come
   if (!fs::exists(candidate.device, failed)) return false;
   if (candidate.kind == DeviceKind::usb_glove) return true;
-  return udev_is_done_with(candidate.device);
+  return udev_is_done_with(candidate.kind == DeviceKind::input_device ? "input" : "tty",
+                           candidate.device);
 }
 
-std::vector<GloveCandidate> find_gloves() {
-  std::vector<GloveCandidate> found = list_candidates();
+std::vector<DeviceCandidate> find_devices() {
+  std::vector<DeviceCandidate> found = list_candidates();
   add_holders(found);
   return found;
 }
