@@ -139,9 +139,9 @@ Result<RecordedExercise> record_exercise(const driver::TrackerStation& station,
   };
   if (!wait_and_count(recorder, options.duration_s, &exercise, note_rest)) return interrupted;
   if (exercise.poses.empty())
-    return Error{Errc::no_device, printable(station.tracker->info().source) +
-                                      ": no pose of station " + std::to_string(station.station) +
-                                      " came; check that it is plugged in, and near its source"};
+    return Error{Errc::no_device,
+                 printable(station.source) +
+                     ": no pose came; check that the station is plugged in, and near its source"};
   return exercise;
 }
 

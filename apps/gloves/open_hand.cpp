@@ -62,7 +62,7 @@ Error same_hand(const OpenHand& one, const OpenHand& other) {
   if (const std::size_t at = name.find("hand="); at != std::string::npos) {
     name.replace(at, name.find('&', at) - at, wish);
   } else {
-    name += (name.find('?') == std::string::npos ? "?" : "&") + wish;
+    name = driver::with_option(name, wish);
   }
   return {Errc::usage,
           both + "leave one out, or, if that one is on the other hand, say " + shell_word(name)};

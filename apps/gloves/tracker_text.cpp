@@ -25,14 +25,14 @@ TurnAngles angles_of(const std::array<double, 4>& turn_xyzw) noexcept {
           to_degrees(std::atan2(turn(2, 1), turn(2, 2)))};
 }
 
-std::string pose_json(const driver::TrackerInfo& info, const PoseSample& pose) {
+std::string pose_json(const std::string& source, const PoseSample& pose) {
   const HostTime came = pose.is_replayed ? pose.recorded_arrival : pose.arrival;
   const HostTime taken = pose.is_replayed ? pose.recorded_measured : pose.measured;
   const TurnAngles angles = angles_of(pose.turn_xyzw);
   ordered_json line{{"time_s", to_seconds(came.time_since_epoch())},
                     {"measured_s", to_seconds(taken.time_since_epoch())},
                     {"sequence", pose.sequence},
-                    {"source", info.source},
+                    {"source", source},
                     {"station", pose.station},
                     {"position_m", pose.position_m},
                     {"turn_xyzw", pose.turn_xyzw},

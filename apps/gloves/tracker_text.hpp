@@ -26,7 +26,7 @@ TurnAngles angles_of(const std::array<double, 4>& turn_xyzw) noexcept;
 /// sequence, source, station, position_m, turn_xyzw, azimuth_deg, elevation_deg, roll_deg, error
 /// (the device's letter; null: none), and device_time_s if the tracker has a clock. What is not
 /// finite is null.
-std::string pose_json(const driver::TrackerInfo& info, const PoseSample& pose);
+std::string pose_json(const std::string& source, const PoseSample& pose);
 
 /// Returns an object with the keys source, model, stations, rate_hz, filtered,
 /// stage_from_tracker_xyzw and facts.

@@ -91,13 +91,13 @@ bool is_on_hand(const Options& options, const Gloved& gloved) {
 
 Result<fs::path> path_of(const Options& options, const driver::TrackerStation& station, Side side) {
   if (!options.out.empty()) return fs::path(options.out);
-  return hand::own_mount_path(station.tracker->info().source, station.station, side);
+  return hand::own_mount_path(station.source, station.station, side);
 }
 
 Result<void> write_result(const Options& options, const driver::TrackerStation& station, Side side,
                           const hand::TrackerCalibration& made) {
   hand::TrackerMount file;
-  file.tracker = hand::tracker_name(station.tracker->info().source);
+  file.tracker = hand::tracker_name(station.source);
   file.station = station.station;
   file.side = side;
   hand::set_mount(file, made.mount);
@@ -135,7 +135,8 @@ Result<void> calibrate_station(const Options& options) {
   exercise.poses = recorded->poses;
   exercise.wrist = recorded->wrist;
   const auto made = hand::calibrate_tracker(exercise);
-  if (!made) return Error{made.error().code, printable(info.source) + ": " + made.error().message};
+  if (!made)
+    return Error{made.error().code, printable(station->source) + ": " + made.error().message};
   for (const std::string& line : calibrate::exercise_report(*made))
     std::cout << line << '\n';
   return write_result(options, *station, exercise.side, *made);

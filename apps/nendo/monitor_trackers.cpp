@@ -33,7 +33,7 @@ public:
     return !cli::stop_requested() && !is_over && (options_.count == 0 || taken_ < options_.count);
   }
   bool have_ended() const noexcept { return poses_.have_ended(); }
-  /// Calls `show(const driver::TrackerInfo&, const PoseSample&)` for each new pose.
+  /// Calls `show(const driver::TrackerStation&, const PoseSample&)` for each new pose.
   template <class Show>
   void take(Show&& show) {
     for (std::size_t at = 0; at < poses_.size(); ++at)
@@ -41,7 +41,7 @@ public:
         if (options_.count > 0 && taken_ >= options_.count) return;
         ++taken_;
         seen_[at].add(pose);
-        show(poses_[at].tracker->info(), pose);
+        show(poses_[at], pose);
       });
   }
   std::vector<gloves::TrackerPicture> pictures() const {
@@ -70,8 +70,8 @@ void show_lines(Monitored& monitored) {
   while (monitored.may_continue() && !ended) {
     ended = monitored.have_ended(); // then all that they sent is in the rings
     bool any = false;
-    monitored.take([&](const driver::TrackerInfo& info, const PoseSample& pose) {
-      std::cout << gloves::pose_json(info, pose) << '\n';
+    monitored.take([&](const driver::TrackerStation& station, const PoseSample& pose) {
+      std::cout << gloves::pose_json(station.source, pose) << '\n';
       any = true;
     });
     if (any) std::cout.flush();
@@ -87,7 +87,7 @@ void show_screen(Monitored& monitored) {
   bool quits = false;
   while (!ended && !quits && monitored.may_continue() && !terminal.is_gone()) {
     ended = monitored.have_ended();
-    monitored.take([](const driver::TrackerInfo&, const PoseSample&) {});
+    monitored.take([](const driver::TrackerStation&, const PoseSample&) {});
     const HostTime now = HostClock::now();
     lines = gloves::tracker_lines(monitored.pictures(), now, terminal.has_keys(), terminal.size());
     terminal.draw(lines);

@@ -92,15 +92,15 @@ PoseCounts copy_samples(std::vector<gloves::OpenHand>& hands, flow::InputLog& in
 
 void print_wrist(const gloves::OpenHand& hand, std::uint64_t poses) {
   const driver::TrackerStation& station = hand.wrist->station;
-  cli::print("  {:14} {} poses; {}, station {}\n", fmt::format("{} wrist", name_of(hand.side)),
-             poses, printable(station.tracker->info().source), station.station);
+  cli::print("  {:14} {} poses; {}\n", fmt::format("{} wrist", name_of(hand.side)), poses,
+             printable(station.source));
   cli::print("  {:14} {}\n", "", driver::in_words(driver::counts_of(station.tracker->stats())));
 }
 
 nlohmann::ordered_json wrist_json(const gloves::OpenHand& hand, std::uint64_t poses) {
   const driver::TrackerStation& station = hand.wrist->station;
   nlohmann::ordered_json wrist{{"hand", name_of(hand.side)},
-                               {"source", station.tracker->info().source},
+                               {"source", station.source},
                                {"station", station.station},
                                {"poses", poses}};
   gloves::add_counts(wrist, driver::counts_of(station.tracker->stats()));

@@ -49,6 +49,7 @@ recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands,
     if (!hand.wrist) continue;
     const driver::TrackerStation& station = hand.wrist->station;
     setup.trackers.push_back({hand.side, station.station, station.tracker->info()});
+    setup.trackers.back().info.source = station.source;
   }
   return setup;
 }

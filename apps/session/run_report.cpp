@@ -140,10 +140,9 @@ void print_wrist(const gloves::OpenHand& hand, const flow::WristStats& stats) {
   const driver::TrackerStation& station = hand.wrist->station;
   const hand::TrackingCounts& counts = stats.counts;
   print_row(fmt::format("{} wrist", name_of(hand.side)),
-            fmt::format("{} poses, {} refused, {} flips, {} losses, {} releases; {}, station {}",
+            fmt::format("{} poses, {} refused, {} flips, {} losses, {} releases; {}",
                         cli::thousands(counts.poses), counts.refused, counts.flips, counts.losses,
-                        stats.releases, printable(station.tracker->info().source),
-                        station.station));
+                        stats.releases, printable(station.source)));
   print_row("", driver::in_words(driver::counts_of(station.tracker->stats())));
   if (counts.flips > 0) print_row("", gloves::hemisphere_advice);
   if (stats.is_lost) print_row("", "lost at the end: no good pose came");

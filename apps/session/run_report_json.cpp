@@ -85,7 +85,7 @@ ordered_json clay_json(const flow::LoopStats& stats, double units_per_metre) {
 ordered_json wrist_json(const gloves::OpenHand& hand, const flow::WristStats& stats) {
   const driver::TrackerStation& station = hand.wrist->station;
   const driver::StreamStats sent = station.tracker->stats();
-  ordered_json line{{"tracker", station.tracker->info().source},
+  ordered_json line{{"tracker", station.source},
                     {"model", station.tracker->info().model},
                     {"station", station.station},
                     {"poses", stats.counts.poses},

@@ -241,7 +241,7 @@ private:
       const std::size_t slot = flow::Placement::index_of(hand.side);
       for (const std::string& sentence :
            wrists_[slot].changes(hand.side, frame.hands[slot], frame.scheduled))
-        report(hand.wrist->station.tracker->info().source + ": " + sentence);
+        report(hand.wrist->station.source + ": " + sentence);
     }
   }
   void settle_sinks() {

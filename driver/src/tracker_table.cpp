@@ -16,7 +16,10 @@ namespace {
 /// Takes the option `station=N`, a number of at least 1; 1 if it is missing.
 Result<std::uint16_t> take_numbered_station(DeviceSpec& spec) {
   const auto option = spec.options.extract("station");
-  if (option.empty()) return std::uint16_t{1};
+  if (option.empty()) {
+    spec.text = with_option(spec.text, "station=1");
+    return std::uint16_t{1};
+  }
   const auto station = number_in<std::uint16_t>(option.mapped());
   if (station && *station >= 1 && *station <= 16) return *station;
   return Error{Errc::usage, spec.text + ": option station must be a whole number from 1 to 16"};
@@ -25,7 +28,10 @@ Result<std::uint16_t> take_numbered_station(DeviceSpec& spec) {
 /// Takes the option `sensor=N`, a number of VRPN; 0 if it is missing.
 Result<std::uint16_t> take_sensor(DeviceSpec& spec) {
   const auto option = spec.options.extract("sensor");
-  if (option.empty()) return std::uint16_t{0};
+  if (option.empty()) {
+    spec.text = with_option(spec.text, "sensor=0");
+    return std::uint16_t{0};
+  }
   if (const auto sensor = number_in<std::uint16_t>(option.mapped())) return *sensor;
   return Error{Errc::usage, spec.text + ": option sensor must be a whole number from 0 to 65535"};
 }
@@ -84,6 +90,7 @@ struct Wanted {
 struct Place {
   std::size_t tracker = 0;
   std::uint16_t station = 0;
+  std::string source; ///< TrackerStation::source
 };
 
 Result<Place> place_in(std::vector<Wanted>& trackers, std::string_view text,
@@ -94,13 +101,14 @@ Result<Place> place_in(std::vector<Wanted>& trackers, std::string_view text,
   if (!driver) return driver.error();
   const auto station = driver->take_station(*spec);
   if (!station) return station.error();
+  std::string source = std::exchange(spec->text, std::string(text));
   auto found = std::find_if(trackers.begin(), trackers.end(),
                             [&](const Wanted& wanted) { return wanted.is_of(*spec); });
   if (found == trackers.end())
     found = trackers.insert(found, Wanted{*std::move(spec), *driver, {}});
   if (std::find(found->stations.begin(), found->stations.end(), *station) == found->stations.end())
     found->stations.push_back(*station);
-  return Place{static_cast<std::size_t>(found - trackers.begin()), *station};
+  return Place{static_cast<std::size_t>(found - trackers.begin()), *station, std::move(source)};
 }
 
 /// Adds the tracker's name as it was typed.
@@ -128,8 +136,8 @@ Result<std::vector<TrackerStation>> open_trackers(std::span<const std::string> s
     trackers.push_back(*std::move(opened));
   }
   std::vector<TrackerStation> stations;
-  for (const auto& [tracker, station] : places)
-    stations.push_back({trackers[tracker], station});
+  for (const auto& [tracker, station, source] : places)
+    stations.push_back({trackers[tracker], station, source});
   return stations;
 }
 

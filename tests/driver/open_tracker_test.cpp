@@ -76,6 +76,20 @@ TEST_SUITE("open_tracker") {
     CHECK(stations[0].tracker->info().stations == std::vector<std::uint16_t>{2, 1});
     CHECK(stations[0].tracker->info().rate_hz == 240.0);
     CHECK(stations[0].tracker->info().kind == SourceKind::simulated);
+    CHECK(stations[0].tracker->info().source == "sim:orbit?station=2");
+  }
+
+  TEST_CASE("each station has a specification of its own, which names it") {
+    const auto stations =
+        required(open_trackers(Specs{"sim:orbit?station=2", "sim:orbit", "sim?rate=60"}));
+    CHECK(stations[0].source == "sim:orbit?station=2");
+    CHECK(stations[1].source == "sim:orbit?station=1");
+    CHECK(stations[2].source == "sim?rate=60&station=1");
+    for (const TrackerStation& station : stations) {
+      const auto again = required(open_trackers(Specs{station.source}));
+      CHECK(again.front().station == station.station);
+      CHECK(again.front().source == station.source);
+    }
   }
 
   TEST_CASE("a station that is named twice is one station, with two rings") {

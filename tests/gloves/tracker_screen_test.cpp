@@ -101,7 +101,7 @@ TEST_SUITE("tracker_screen") {
           REQUIRE(is_printable(line));
         }
       }
-    CHECK(nlohmann::json::parse(pose_json(shown.info, wild))["position_m"][0].is_null());
+    CHECK(nlohmann::json::parse(pose_json(shown.info.source, wild))["position_m"][0].is_null());
   }
 
   TEST_CASE("the angles are those of trackers: about z, then y, then x") {

@@ -67,7 +67,7 @@ TEST_SUITE("tracker commands") {
     for (const auto& text : lines) {
       const json line = json::parse(text);
       stations.insert(line["station"].get<int>());
-      CHECK(line["source"].get<std::string>().starts_with("sim:orbit"));
+      CHECK(line["source"] == "sim:orbit?station=" + std::to_string(line["station"].get<int>()));
       REQUIRE(line["position_m"].size() == 3);
       REQUIRE(line["turn_xyzw"].size() == 4);
       double length = 0.0;
@@ -138,7 +138,8 @@ TEST_SUITE("tracker commands") {
     CHECK(info["poses"] == both);
     REQUIRE(info["trackers"].size() == 2);
     CHECK(info["trackers"][0]["hand"] == "left");
-    CHECK(info["trackers"][1]["source"].get<std::string>().starts_with("sim:orbit"));
+    CHECK(info["trackers"][0]["source"] == "sim:orbit?station=1");
+    CHECK(info["trackers"][1]["source"] == "sim:orbit?station=2");
     CHECK(contains(nendo::test::nendo({"recording", "info", take}).out, "left wrist"));
     CHECK(nendo::test::nendo({"recording", "check", take}).exit_code == 0);
 
@@ -154,6 +155,27 @@ TEST_SUITE("tracker commands") {
           std::string::npos);
     const auto glove = nendo::test::nendo({"monitor", replay, "--count", "1"});
     CHECK(last_object(glove)["hand"] == "left");
+  }
+
+  TEST_CASE("the tracker of a recording names the hand and the station that it has") {
+    const TemporaryFolder folder;
+    const std::string take = (folder.path() / "take.nendo").string();
+    REQUIRE(nendo::test::nendo({"record", "sim:wave", "--right-wrist", "sim:orbit?station=3",
+                                "--out", take, "--duration", "500ms"})
+                .exit_code == 0);
+    const std::string replay = "replay:" + take;
+    const auto seen = nendo::test::nendo({"monitor", replay, "--tracker", "--count", "1"});
+    CAPTURE(seen.err);
+    REQUIRE(seen.exit_code == 0);
+    CHECK(last_object(seen)["source"] == replay + "?hand=right");
+    CHECK(last_object(seen)["station"] == 3);
+    const auto again =
+        nendo::test::nendo({"record", "sim:wave", "--right-wrist", replay, "--out",
+                            (folder.path() / "again.nendo").string(), "--duration", "500ms"});
+    CAPTURE(again.err);
+    CHECK(contains(again.out, " poses; " + replay + "?hand=right\n"));
+    CHECK(is_one_line_about(nendo::test::nendo({"info", replay + "?hand=left", "--tracker"}).err,
+                            "left hand"));
   }
 
   TEST_CASE("record without a tracker has no wrists, and refuses a tracker for no hand") {
@@ -191,7 +213,8 @@ TEST_SUITE("tracker commands") {
     CAPTURE(text.err);
     REQUIRE(text.exit_code == 0);
     CHECK(contains(text.out, "  right wrist    "));
-    CHECK(contains(text.out, "sim:orbit, station 2\n"));
+    CHECK(contains(text.out, "; sim:orbit?station=1\n"));
+    CHECK(contains(text.out, "; sim:orbit?station=2\n"));
     CHECK(contains(text.out, "  pose to frame  p50 "));
     CHECK(contains(text.out, "  age of poses   p50 "));
     CHECK_FALSE(contains(text.out, "hemisphere"));
@@ -202,8 +225,9 @@ TEST_SUITE("tracker commands") {
     const json summary = last_object(done);
     for (const std::string side : {"left", "right"}) {
       const json& wrist = summary[side]["wrist"];
-      CHECK(wrist["tracker"].get<std::string>().starts_with("sim:orbit"));
-      CHECK(wrist["station"] == (side == "left" ? 1 : 2));
+      const int station = side == "left" ? 1 : 2;
+      CHECK(wrist["tracker"] == "sim:orbit?station=" + std::to_string(station));
+      CHECK(wrist["station"] == station);
       CHECK(wrist["poses"].get<int>() > 50);
       CHECK(wrist["poses"].get<int>() <= wrist["delivered"].get<int>());
       for (const auto* none : {"flips", "releases"})
@@ -227,7 +251,8 @@ TEST_SUITE("tracker commands") {
                             "--duration", "3", "--out", (folder.path() / "shape.obj").string()});
     CAPTURE(done.err);
     REQUIRE(done.exit_code == 0);
-    CHECK(contains(done.err, "replay:" + take + ": no good pose of the left wrist comes"));
+    CHECK(
+        contains(done.err, "replay:" + take + "?hand=left: no good pose of the left wrist comes"));
     CHECK(contains(done.err, "wrist lost"));
     CHECK_FALSE(contains(done.out, " 0 losses"));
     CHECK(contains(done.out, "lost at the end"));

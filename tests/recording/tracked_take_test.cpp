@@ -155,6 +155,8 @@ TEST_SUITE("tracked_take") {
     auto stations = driver::open_trackers(both, more);
     REQUIRE(stations);
     CHECK((*stations)[0].tracker == (*stations)[1].tracker);
+    CHECK((*stations)[0].station != (*stations)[1].station);
+    CHECK((*stations)[1].source == both[1]);
     PoseRing left(1024), right(1024);
     const std::array rings{&left, &right};
     REQUIRE(driver::start_trackers(*stations, rings));

@@ -63,6 +63,11 @@ Result<DeviceSpec> parse_device_spec(std::string_view text) {
   return spec;
 }
 
+std::string with_option(std::string_view spec, std::string_view option) {
+  const char separator = spec.find('?') == std::string_view::npos ? '?' : '&';
+  return std::string(spec) + separator + std::string(option);
+}
+
 Result<void> allow_options(const DeviceSpec& spec, std::initializer_list<std::string_view> known) {
   for (const auto& [key, value] : spec.options) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;

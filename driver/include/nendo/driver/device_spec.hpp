@@ -21,6 +21,8 @@ struct DeviceSpec {
 
 /// Error: usage, naming the malformed part.
 NENDO_API Result<DeviceSpec> parse_device_spec(std::string_view text);
+/// Returns the text of a specification with one more option, such as "station=1".
+NENDO_API std::string with_option(std::string_view spec, std::string_view option);
 
 /// Fails with the error `usage` if `spec` has an option that is not `known`. The message names the
 /// option and all known ones.

@@ -20,8 +20,9 @@ struct TrackerDriver {
   std::string_view kind;    ///< the part before the colon
   std::string_view grammar; ///< the grammar in `--help`
   std::string_view summary; ///< the description in `--help`
-  /// Removes the station from `spec`, so that specifications of one tracker become equal, and
-  /// returns it. Error: usage.
+  /// Removes the station from the options or the target of `spec`, so that specifications of one
+  /// tracker become equal, and returns it. Adds it to the text of `spec` if the user left it out.
+  /// May read a file. Errors: usage, those of the file.
   Result<std::uint16_t> (*take_station)(DeviceSpec& spec);
   /// Opens and identifies the tracker, as open_trackers() does. `spec` has no station.
   Result<std::unique_ptr<Tracker>> (*open)(const DeviceSpec& spec,
@@ -32,6 +33,9 @@ struct TrackerDriver {
 struct TrackerStation {
   std::shared_ptr<Tracker> tracker;
   std::uint16_t station = 0;
+  /// The specification that names this station, e.g. "fastrak:/dev/ttyUSB2?station=1", also if the
+  /// user left the station out. TrackerInfo::source is that of the first station, as typed.
+  std::string source;
 };
 
 /// Opens the trackers of these specifications, and returns their stations in the same order. A

@@ -21,8 +21,10 @@ namespace nendo::driver {
 inline constexpr std::array<double, 4> stage_from_z_down_xyzw{0.5, 0.5, -0.5, 0.5};
 
 struct TrackerInfo {
-  std::string source; ///< the TRACKER specification that opened it, e.g. "fastrak:/dev/ttyUSB2"
-  std::string model;  ///< the reported model, one line
+  /// The first TRACKER specification that opened it, e.g. "fastrak:/dev/ttyUSB2". Messages about
+  /// one station say TrackerStation::source.
+  std::string source;
+  std::string model;                   ///< the reported model, one line
   std::vector<std::uint16_t> stations; ///< that deliver poses, in the order of the request
   /// Nominal poses per second of all stations together; 0 if unknown.
   double rate_hz = 0.0;

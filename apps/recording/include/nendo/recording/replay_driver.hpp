@@ -20,8 +20,9 @@ NENDO_API driver::GloveDriver replay_driver() noexcept;
 
 /// Returns the driver of `replay:FILE?hand=left|right&speed=X&loop=yes|no&end=stop|hold`, a tracker
 /// with the recorded poses of one hand or both, for driver::open_trackers(). `hand` may be omitted
-/// if one hand was tracked. Times and options are as those of replay_driver(). Errors: usage,
-/// bad_input (no recording, no poses), no_device (not of that hand).
+/// if one hand was tracked. Stations have their recorded numbers, or 1 for the left and 2 for the
+/// right hand if these are the same. Times and options are as those of replay_driver(). Errors:
+/// usage, bad_input (no recording, no poses), no_device (not of that hand).
 NENDO_API driver::TrackerDriver replay_tracker_driver() noexcept;
 
 } // namespace nendo::recording
