@@ -16,14 +16,14 @@ inline std::shared_ptr<const puppet::Rig> rig_of(const puppet::Puppet& puppet,
 }
 
 /// Returns the puppet after an edit; the same one, if the edit is refused, or if it would have more
-/// points than that. Without a puppet, it is that of the ball.
+/// points than `max_points`. Without a puppet, it is that of the ball.
 template <class Random>
 std::shared_ptr<const puppet::Rig> any_puppet(const std::shared_ptr<const puppet::Rig>& now,
                                               const deform::Mesh& model, Random& random,
-                                              std::size_t most = 10) {
+                                              std::size_t max_points = 10) {
   if (!now) return rig_of(*puppet::parse_puppet(ball_puppet, "a test's puppet"), model);
-  const auto number = [&](double least, double most) {
-    return least + (most - least) * static_cast<double>(random() % 1000) / 1000.0;
+  const auto number = [&](double min, double max) {
+    return min + (max - min) * static_cast<double>(random() % 1000) / 1000.0;
   };
   const auto vector = [&](double size) {
     const double x = number(-size, size), y = number(-size, size);
@@ -57,7 +57,7 @@ std::shared_ptr<const puppet::Rig> any_puppet(const std::shared_ptr<const puppet
       return puppet::with_move(*now, function, point, vector(0.2));
     }
   }();
-  return edited && edited->points.size() <= most ? rig_of(*edited, model) : now;
+  return edited && edited->points.size() <= max_points ? rig_of(*edited, model) : now;
 }
 
 /// Returns other masks of fingertips, or the same ones mirrored; null is none.
