@@ -75,7 +75,7 @@ std::string both_ends(const std::string& left, const std::string& right, int wid
   return line + right;
 }
 
-std::string stream_line(const StreamState& state, const std::string& keys, int width) {
+std::string stream_text(const StreamState& state) {
   constexpr double silent_after_s = 0.5;
   std::string text;
   if (state.stats.rate_hz > 0.0) text = fixed(state.stats.rate_hz, 1) + "/s, ";
@@ -89,7 +89,11 @@ std::string stream_line(const StreamState& state, const std::string& keys, int w
   } else {
     text += fixed(1000.0 * std::max(*state.age_s, 0.0), 0) + " ms old";
   }
-  text += ", " + losses(state.asked_hz, state.stats);
+  return text + ", " + losses(state.asked_hz, state.stats);
+}
+
+std::string stream_line(const StreamState& state, const std::string& keys, int width) {
+  const std::string text = stream_text(state);
   // --help lists the keys; losses are shown only here.
   const bool keys_fit = text.size() + 2 + keys.size() <= static_cast<std::size_t>(width);
   return both_ends(text, keys_fit ? keys : "", width);

@@ -26,8 +26,10 @@ struct StreamState {
   const char* none_yet = "no sample yet";
 };
 
-/// Returns the rate, the age of the latest sample, and the losses, with `keys` at the end if they
-/// fit.
+/// Returns the rate, the age of the latest sample, and the losses: "90.0/s, 8 ms old, 359
+/// delivered, nothing lost".
+std::string stream_text(const StreamState& state);
+/// Returns the same for one line, with `keys` at the end if they fit.
 std::string stream_line(const StreamState& state, const std::string& keys, int width);
 
 } // namespace nendo::gloves

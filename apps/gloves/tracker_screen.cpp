@@ -68,16 +68,7 @@ std::optional<double> age_of_newest(const TrackerPicture& tracker, HostTime now)
 
 void SeenPoses::add(const PoseSample& pose) {
   latest_ = pose;
-  ++count_;
-  arrivals_.push_back(pose.arrival);
-  while (arrivals_.front() < pose.arrival - std::chrono::seconds(1))
-    arrivals_.pop_front();
-}
-
-double SeenPoses::rate_hz() const noexcept {
-  if (arrivals_.size() < 2 || arrivals_.back() <= arrivals_.front()) return 0.0;
-  return static_cast<double>(arrivals_.size() - 1) /
-         to_seconds(arrivals_.back() - arrivals_.front());
+  rate_.add(++count_, pose.arrival);
 }
 
 std::vector<std::string> tracker_lines(const std::vector<TrackerPicture>& trackers, HostTime now,

@@ -3,7 +3,6 @@
 // and a line for each station.
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include <nendo/driver/tracker.hpp>
 
 #include "cli/terminal.hpp"
+#include "gloves/count_rate.hpp"
 
 namespace nendo::gloves {
 
@@ -20,14 +20,12 @@ public:
   void add(const PoseSample& pose);
   const std::optional<PoseSample>& latest() const noexcept { return latest_; }
   std::uint64_t count() const noexcept { return count_; }
-  /// Returns the poses per second, over the last second before the latest one; 0 until there are
-  /// two.
-  double rate_hz() const noexcept;
+  double rate_hz() const noexcept { return rate_.per_s(); }
 
 private:
   std::optional<PoseSample> latest_;
-  std::deque<HostTime> arrivals_; ///< in the last second
   std::uint64_t count_ = 0;
+  CountRate rate_;
 };
 
 struct StationPicture {

@@ -20,7 +20,7 @@ std::vector<std::string> WristNotices::changes(Side side, const flow::HandFrame&
     is_loss_reported_ = true;
     sentences.push_back("no good pose of " + wrist + " comes: the hand stays where it is");
   }
-  if (hand.flips > 0 && !std::exchange(is_flip_reported_, true))
+  if (hand.pose_counts.flips > 0 && !std::exchange(is_flip_reported_, true))
     sentences.emplace_back(hemisphere_advice);
   return sentences;
 }

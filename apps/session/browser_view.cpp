@@ -12,6 +12,15 @@
 namespace nendo::session {
 namespace {
 
+/// Returns the text of the devices message.
+std::string device_lines(const gloves::DeviceStatuses& devices) {
+  std::string lines;
+  for (const Side side : {Side::left, Side::right})
+    for (const auto& [title, state] : devices[flow::Placement::index_of(side)])
+      lines.append(name_of(side)).append("\t").append(title).append("\t").append(state) += '\n';
+  return lines;
+}
+
 class WebView final : public BrowserView {
 public:
   WebView(std::unique_ptr<web::Server> server, std::string model_name) noexcept
@@ -40,10 +49,7 @@ public:
     return {};
   }
   void update(const RunStatus& status, Asks& asks) override {
-    web::GloveStates gloves;
-    for (std::size_t slot = 0; slot < gloves.size(); ++slot)
-      gloves[slot] = {status.gloves[slot].counts, status.gloves[slot].uncalibrated};
-    server_->set_gloves(gloves);
+    server_->set_devices(device_lines(status.devices));
     server_->set_settings(status.frame.settings);
     server_->set_commands(status.situation());
     server_->follow(status.frame, status.puppet.get());

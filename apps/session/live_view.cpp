@@ -40,12 +40,10 @@ public:
   }
 
   void update(const RunStatus& status, Asks& asks) override {
-    for (std::size_t slot = 0; slot < status.gloves.size(); ++slot) {
-      gauges_.gloves[slot] = status.gloves[slot].source;
-      if (gauges_.gloves[slot].empty())
-        gauges_.gloves[slot] = "the recording"; // that is played over
-      if (status.gloves[slot].uncalibrated) gauges_.gloves[slot] += " (uncalibrated)";
-      gauges_.counts[slot] = status.gloves[slot].counts;
+    for (std::size_t slot = 0; slot < status.devices.size(); ++slot) {
+      gauges_.devices[slot].clear();
+      for (const auto& [title, state] : status.devices[slot])
+        gauges_.devices[slot].insert(gauges_.devices[slot].end(), {title, state});
     }
     gauges_.facts = status.facts;
     if (std::exchange(model_, status.frame.model) != status.frame.model) {

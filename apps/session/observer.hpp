@@ -2,37 +2,26 @@
 // An observer watches a run from the main thread and may send commands: the keys, a window, a
 // browser.
 
-#include <array>
 #include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/command.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/model_version.hpp>
 
 #include "commands/commands.hpp"
+#include "gloves/device_status.hpp"
 #include "session/place_loop.hpp"
 
 namespace nendo::session {
-
-struct GloveStatus {
-  std::string source; ///< GloveInfo::source; empty: no glove for this hand
-  driver::RecordCounts counts;
-  bool uncalibrated = false; ///< gloves::OpenHand::uncalibrated
-};
-/// The states of both gloves, by flow::Placement::index_of(side).
-using GloveStatuses = std::array<GloveStatus, 2>;
-/// May take a lock.
-GloveStatuses status_of(const std::vector<gloves::OpenHand>& hands);
 
 struct RunStatus {
   const flow::Frame& frame;        ///< the latest
   const flow::ModelVersion& model; ///< the model of that frame
   bool fresh = false;              ///< the frame is new since the last call
-  const GloveStatuses& gloves;
+  const gloves::DeviceStatuses& devices;
   commands::RunFacts facts{};
   /// The frame's puppet; null: none.
   const std::shared_ptr<const puppet::Rig>& puppet;

@@ -38,7 +38,8 @@ std::string progress_line(const flow::Frame& frame, double elapsed_s, double dur
     if (!hand.present) continue;
     line += fmt::format("  {}: {}", name_of(side),
                         hand.silent ? "silent" : std::to_string(hand.samples) + " samples");
-    if (hand.tracked && hand.lost) line += ", wrist lost";
+    if (hand.tracked)
+      line += hand.lost ? ", wrist lost" : fmt::format(", {} poses", hand.pose_counts.poses);
     if (uncalibrated[flow::Placement::index_of(side)]) line += ", uncalibrated";
   }
   const bool has_model = frame.shape.block_count() > 0;

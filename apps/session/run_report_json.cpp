@@ -169,8 +169,12 @@ void print_progress_json(const flow::Frame& frame, double elapsed_s) {
   for (const Side side : {Side::left, Side::right}) {
     const auto& hand = frame.hands[flow::Placement::index_of(side)];
     if (!hand.present) continue;
-    line[std::string(name_of(side))] = {{"samples", hand.samples}, {"silent", hand.silent}};
-    if (hand.tracked) line[std::string(name_of(side))]["wrist_lost"] = hand.lost;
+    ordered_json& of_hand = line[std::string(name_of(side))];
+    of_hand = {{"samples", hand.samples}, {"silent", hand.silent}};
+    if (hand.tracked)
+      of_hand.update({{"poses", hand.pose_counts.poses},
+                      {"refused_poses", hand.pose_counts.refused},
+                      {"wrist_lost", hand.lost}});
   }
   cli::print_line(line);
 }

@@ -215,8 +215,8 @@ private:
     commands_.follow_frame(frame);
     follow_stuck(frame);
     follow_wrists(frame);
-    const RunStatus status{frame,   model,   fresh,
-                           gloves_, facts(), placed_.loop->changes().puppet(frame.puppet)};
+    const RunStatus status{frame,    model,   fresh,
+                           devices_, facts(), placed_.loop->changes().puppet(frame.puppet)};
     asks_.clear();
     for (Observer* observer : observers_)
       observer->update(status, asks_);
@@ -244,6 +244,9 @@ private:
         report(hand.wrist->station.source + ": " + sentence);
     }
   }
+  void look_at_devices() {
+    devices_ = device_watch_.look(hands_, placed_.loop->frames().front(), HostClock::now());
+  }
   void settle_sinks() {
     const std::uint32_t model = placed_.loop->frames().front().model;
     if (std::exchange(shown_model_, model) == model) return;
@@ -269,7 +272,7 @@ private:
 
   // Called last, because simulated hands act at times of the run.
   Result<void> begin_gloves() {
-    gloves_ = status_of(hands_);
+    look_at_devices();
     for (Observer* observer : observers_)
       observer->loop_begins(start());
     if (options_.over) std::this_thread::sleep_until(options_.over->begin);
@@ -347,7 +350,7 @@ private:
       if (commands_.ends() || ends_with_gloves()) return;
       if (saving_.is_due_now()) save();
       if (HostClock::now() < next_progress) continue;
-      gloves_ = status_of(hands_);
+      look_at_devices();
       if (is_news)
         participants_.progress(frames.front(), to_seconds(HostClock::now() - thread.start));
       is_news = false;
@@ -373,7 +376,8 @@ private:
     gloves::GloveFeedback feedback;
   };
   std::vector<Felt> feedback_; ///< the feedback of all gloves
-  GloveStatuses gloves_;
+  gloves::DeviceWatch device_watch_;
+  gloves::DeviceStatuses devices_;
   double elapsed_s_ = 0.0;
   bool end_reported_ = false;                    ///< the end of all gloves was reported
   std::array<gloves::StuckNotices, 2> stuck_{};  ///< index: flow::Placement::index_of(side)
@@ -381,15 +385,6 @@ private:
 };
 
 } // namespace
-
-GloveStatuses status_of(const std::vector<gloves::OpenHand>& hands) {
-  GloveStatuses statuses;
-  for (const gloves::OpenHand& hand : hands) {
-    statuses[flow::Placement::index_of(hand.side)] = {
-        hand.glove->info().source, driver::counts_of(hand.glove->stats()), hand.uncalibrated};
-  }
-  return statuses;
-}
 
 std::uint64_t ticks_for(const RunOptions& options) noexcept {
   // Ticks that follow samples, or slip, do not measure time.

@@ -115,7 +115,7 @@ private:
 /// The observer, if there is one, and its commands.
 struct Watch {
   session::Observer* observer = nullptr;
-  session::GloveStatuses gloves{};
+  gloves::DeviceStatuses devices{};
   session::Asks asks{};
   session::LoopCommands for_loop{64};
   bool ends = false;                          ///< the observer has requested the end
@@ -130,7 +130,7 @@ struct Watch {
     observer->update({frame,
                       *loop.changes().model(frame.model),
                       fresh,
-                      gloves,
+                      devices,
                       {},
                       loop.changes().puppet(frame.puppet)},
                      asks);
@@ -240,10 +240,11 @@ Result<std::unique_ptr<StressOutcome>> run_stress(StressOptions options, const d
   run.loop.records = &ring;
   Watch watched;
   watched.observer = observer;
-  watched.gloves = session::status_of(hands);
   run.loop.commands = &watched.for_loop.ring();
   const auto placed = session::place_loop(run, hands, model);
   if (!placed) return placed.error();
+  watched.devices =
+      gloves::DeviceWatch().look(hands, placed->loop->frames().front(), HostClock::now());
   if (observer != nullptr) observer->loop_begins({*placed, model, hands});
   run_loop(options, *placed->loop, ring, *outcome, progress, watched);
   for (const auto& hand : hands)

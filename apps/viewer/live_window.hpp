@@ -2,12 +2,12 @@
 // The live window: the scene, a camera that the mouse moves, and a panel with the loop's state and
 // buttons for all commands. The window and the loop never wait for each other. Main thread.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/command.hpp>
 #include <nendo/flow/frame.hpp>
 
@@ -19,10 +19,10 @@ namespace nendo::viewer {
 
 /// Values for the panel in addition to the frame.
 struct Gauges {
-  std::string model;                 ///< the model's name
-  double rate_hz = 0.0;              ///< the requested rate
-  std::array<std::string, 2> gloves; ///< the gloves' names; empty: no glove
-  std::array<driver::RecordCounts, 2> counts{};
+  std::string model;    ///< the model's name
+  double rate_hz = 0.0; ///< the requested rate
+  /// Lines about the devices of each hand, by flow::Placement::index_of(side).
+  std::array<std::vector<std::string>, 2> devices;
   commands::RunFacts facts{};
   std::string report; ///< the result of the last command that saved something
 };

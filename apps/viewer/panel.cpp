@@ -270,14 +270,9 @@ void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) co
     const std::size_t slot = flow::Placement::index_of(side);
     const auto& hand = frame.hands[slot];
     if (!hand.present) continue;
-    ImGui::TextWrapped("%s: %s", std::string(name_of(side)).c_str(), gauges.gloves[slot].c_str());
-    ImGui::Text("%llu samples%s%s", static_cast<unsigned long long>(hand.samples),
-                hand.silent ? " (silent)" : "",
-                !hand.tracked ? ""
-                : hand.lost   ? ", wrist lost"
-                              : ", wrist tracked");
     ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(driver::in_words(gauges.counts[slot]).c_str());
+    for (const std::string& line : gauges.devices[slot])
+      ImGui::TextUnformatted(line.c_str());
     ImGui::PopTextWrapPos();
     const auto bends = bends_of(hand.pose);
     ImGui::PushID(static_cast<int>(slot));

@@ -29,6 +29,7 @@ enum Fact : std::size_t {
   puppet_fact,
   clay_fact,
   commands_fact,
+  devices_fact,
   fact_count
 };
 using Facts = std::array<SharedBytes, fact_count>;

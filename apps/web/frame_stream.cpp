@@ -165,9 +165,6 @@ std::optional<FrameStream::Shape> FrameStream::take_shape() {
 
 namespace {
 
-/// The missed records of a glove that does not report them.
-constexpr std::uint32_t unknown_count = 0xFFFFFFFF;
-
 bool has_fields(const Record& record) noexcept {
   std::uint16_t count = 0;
   std::memcpy(&count, record.step.data() + 2, sizeof count);
@@ -216,7 +213,7 @@ bool Feed::can_follow(std::span<const Record> records) const noexcept {
 }
 
 std::optional<std::vector<std::byte>> Feed::update(std::span<const Record> records,
-                                                   const FeedCounters& counters) {
+                                                   std::uint64_t lost) {
   if (records.empty()) return std::nullopt;
   const auto news = unseen(records);
   lacks_shape_ = !can_follow(news);
@@ -224,17 +221,8 @@ std::optional<std::vector<std::byte>> Feed::update(std::span<const Record> recor
   UpdateHead head;
   std::memcpy(&head, newest.head.data(), sizeof head);
   head.max_late_us = max_late(records);
-  head.lost = static_cast<std::uint32_t>(counters.lost);
+  head.lost = static_cast<std::uint32_t>(lost);
   head.skipped = static_cast<std::uint32_t>(skipped_);
-  for (std::size_t slot = 0; slot < counters.gloves.size(); ++slot) {
-    const auto& [counts, uncalibrated] = counters.gloves[slot];
-    head.bad_records[slot] = static_cast<std::uint32_t>(counts.bad);
-    head.delivered[slot] = static_cast<std::uint32_t>(counts.delivered);
-    head.missed_records[slot] =
-        counts.counts_missed ? static_cast<std::uint32_t>(counts.missed) : unknown_count;
-    head.refused[slot] = static_cast<std::uint32_t>(counts.refused);
-    if (uncalibrated) head.state = static_cast<std::uint8_t>(head.state | 2U << slot);
-  }
   std::vector<std::byte> message = newest.head;
   for (std::size_t at = 0; !lacks_shape_ && at < news.size(); ++at) {
     const Record& record = news[at];

@@ -3,7 +3,6 @@
 // PROTOCOL.md, from which a client can compute the shape. Copies the whole shape only at the
 // server's request. A feed selects the records and shapes for one client. Independent of sockets.
 
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +12,6 @@
 
 #include <nendo/base/spsc_ring.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
-#include <nendo/driver/record_counts.hpp>
 #include <nendo/flow/frame.hpp>
 
 namespace nendo::web {
@@ -99,20 +97,6 @@ private:
   std::vector<std::byte> incoming_;
 };
 
-/// A glove's state for the page, besides its samples.
-struct GloveState {
-  driver::RecordCounts counts;
-  bool uncalibrated = false; ///< its calibration is an average hand's
-};
-/// Index: flow::Placement::index_of(side).
-using GloveStates = std::array<GloveState, 2>;
-
-/// The server's contribution to an update message.
-struct FeedCounters {
-  std::uint64_t lost = 0; ///< frames that the full ring refused
-  GloveStates gloves;
-};
-
 class Feed {
 public:
   /// Must be called with the records before update() or skip().
@@ -130,9 +114,8 @@ public:
   void shape_sent(std::uint64_t number) noexcept;
 
   /// Makes an update message from the records since the last call; nothing if there are none. The
-  /// message has no steps while the client needs a shape.
-  std::optional<std::vector<std::byte>> update(std::span<const Record> records,
-                                               const FeedCounters& counters);
+  /// message has no steps while the client needs a shape. `lost` is FrameStream::lost().
+  std::optional<std::vector<std::byte>> update(std::span<const Record> records, std::uint64_t lost);
   /// Must be called instead of update() when nothing can be sent to the client.
   void skip(std::span<const Record> records) noexcept;
 

@@ -137,9 +137,8 @@ void Server::follow(const flow::Frame& frame, const puppet::Rig* rig) {
   set_fact(clay_fact, clay_message(frame));
 }
 
-void Server::set_gloves(const GloveStates& gloves) {
-  const std::scoped_lock lock(work_->inbox.mutex);
-  work_->inbox.gloves = gloves;
+void Server::set_devices(std::string_view lines) {
+  set_fact(devices_fact, text_message(MessageType::devices, lines));
 }
 
 ServerCounters Server::counters() const noexcept {
@@ -310,10 +309,8 @@ void Server::Work::send_frames(HostTime now) {
                 sizeof presented_.loop);
     bytes = shared_message(std::move(shape->message));
   }
-  feed_counters_.lost = presented_.stream->lost();
   {
     const std::scoped_lock lock(inbox.mutex);
-    feed_counters_.gloves = inbox.gloves;
     if (!records_.empty() && records_.back().weights != 0)
       inbox.weights_in_use = records_.back().weights;
   }
@@ -359,7 +356,7 @@ void Server::Work::send_frames(Connection& client, const std::optional<FrameStre
     ++counts.shapes;
     counts.shape_bytes += bytes->size();
   }
-  const auto update = client.feed.update(records_, feed_counters_);
+  const auto update = client.feed.update(records_, presented_.stream->lost());
   if (!update) return;
   ++counts.updates;
   counts.update_bytes += update->size();

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nendo/base/result.hpp>
@@ -97,8 +98,8 @@ public:
   /// Sets the frame's steps, the state of its clay, and its puppet; null: none. Notifies clients of
   /// clay at most 30 times per second.
   void follow(const flow::Frame& frame, const puppet::Rig* rig);
-  /// Sets the state of each glove.
-  void set_gloves(const GloveStates& gloves);
+  /// Sets the text of the devices message (PROTOCOL.md).
+  void set_devices(std::string_view lines);
   /// Returns the counters. Each number is atomic; together they are not a consistent snapshot.
   /// Wait-free.
   ServerCounters counters() const noexcept;

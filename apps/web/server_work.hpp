@@ -59,8 +59,7 @@ public:
     std::uint16_t loops = 0;
     std::string report;   ///< the newest report; empty: already sent
     HostTime next_clay{}; ///< the earliest time of the next clay message
-    GloveStates gloves;
-    Facts facts;                                      ///< messages; null until they are set
+    Facts facts;          ///< messages; null until they are set
     std::array<std::uint64_t, fact_count> versions{}; ///< the last versions of versioned facts
     std::vector<Weights> weights;                     ///< oldest first
     std::uint64_t weights_in_use = 0;
@@ -95,7 +94,6 @@ private:
   std::list<Connection> connections_; ///< oldest first
   std::vector<pollfd> polled_;
   std::vector<Record> records_;
-  FeedCounters feed_counters_;
   HostTime next_frames_{};
   HostTime next_accept_{};
   std::atomic<bool> over_{false};

@@ -137,7 +137,6 @@ UpdateHead head_of(const flow::Frame& frame) noexcept {
   head.links = static_cast<std::uint32_t>(std::max(0, frame.chain.links));
   for (unsigned slot = 0; slot < 2; ++slot) {
     const flow::HandFrame& hand = frame.hands[slot];
-    head.samples[slot] = static_cast<std::uint32_t>(hand.samples);
     const unsigned bits = (hand.present ? 1U : 0U) | (hand.silent ? 4U : 0U) |
                           (hand.swapped ? 16U : 0U) | (hand.tracked && hand.lost ? 64U : 0U);
     head.hands = static_cast<std::uint8_t>(head.hands | bits << slot);

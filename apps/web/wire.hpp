@@ -27,7 +27,8 @@ enum class MessageType : std::uint8_t {
   weights = 6,
   puppet = 7,
   clay = 8,
-  commands = 9
+  commands = 9,
+  devices = 10
 };
 enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 enum class StepContent : std::uint8_t { fields = 0, vectors = 1 };
@@ -35,8 +36,8 @@ enum class StepContent : std::uint8_t { fields = 0, vectors = 1 };
 /// The head of an update message, in PROTOCOL.md's order and without gaps.
 struct UpdateHead {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::update);
-  /// Bit 0: the hands hold the model; 1, 2: left, right is uncalibrated; 3: StepList::in_hand; 4,
-  /// 5: left, right has released the puppet; 6: symmetric; 7: there is a puppet.
+  /// Bit 0: the hands hold the model; 3: StepList::in_hand; 4, 5: left, right has released the
+  /// puppet; 6: symmetric; 7: there is a puppet.
   std::uint8_t state = 0;
   /// Bits 0, 1: left, right is present; 2, 3: silent; 4, 5: swapped bones; 6, 7: the
   /// tracker has lost the wrist.
@@ -55,13 +56,8 @@ struct UpdateHead {
   std::uint32_t lost = 0;
   std::uint32_t skipped = 0;
   std::uint32_t links = 0;
-  std::uint32_t samples[2]{};
-  std::uint32_t bad_records[2]{};
-  std::uint32_t delivered[2]{};
-  std::uint32_t missed_records[2]{};
-  std::uint32_t refused[2]{};
 };
-static_assert(sizeof(UpdateHead) == 112);
+static_assert(sizeof(UpdateHead) == 72);
 
 struct ShapeHead {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::shape);
@@ -75,7 +71,7 @@ static_assert(sizeof(ShapeHead) == 16);
 /// The head of the model message, in PROTOCOL.md's order and without gaps.
 struct ModelHead {
   char magic[8]{'N', 'E', 'N', 'D', 'O', 'W', 'E', 'B'};
-  std::uint32_t version = 7;
+  std::uint32_t version = 8;
   std::uint32_t vertices = 0;
   std::uint32_t triangles = 0;
   std::uint32_t name_bytes = 0;
@@ -177,7 +173,7 @@ private:
 float as_float(double value) noexcept;
 
 UpdateHead head_of(const flow::Frame& frame) noexcept;
-/// Returns a text message: report, settings or commands. Allocates.
+/// Returns a text message: report, settings, commands or devices. Allocates.
 std::vector<std::byte> text_message(MessageType type, std::string_view text);
 /// Returns the history message. Allocates.
 std::vector<std::byte> message_of(const flow::StepList& steps);

@@ -84,6 +84,27 @@ TEST_SUITE("tracked_wrist") {
     }
   }
 
+  TEST_CASE("a frame has the poses of each wrist, and when the newest sample and good pose came") {
+    Tracked hands;
+    CHECK(hands.tick().hands[0].newest_pose == HostTime{});
+    const Vector3d begin(0.5, 0.0, 0.0);
+    hands.go(begin, begin + Vector3d(0.0, 0.02, 0.0));
+    const HostTime good = hands.now - period;
+    CHECK(hands.test.loop->frames().front().hands[0].newest_pose == good);
+    for (int pose = 0; pose < 3; ++pose) {
+      hands.push(Side::left, begin + Vector3d(1.0 + pose, 0.0, 0.0)); // where no hand can be
+      hands.tick();
+    }
+    const Frame& frame = hands.test.loop->frames().front();
+    const auto& [left, right] = frame.hands;
+    CHECK(left.newest_pose == good);
+    CHECK(left.pose_counts.refused == 3);
+    CHECK(left.pose_counts.poses == right.pose_counts.poses + 3);
+    CHECK(right.pose_counts.refused == 0);
+    for (const HandFrame& hand : frame.hands)
+      CHECK(hand.newest_sample == hands.now - period);
+  }
+
   TEST_CASE("a lost hand freezes within 0.1 s and a tick, and one that returns nearby keeps hold") {
     Tracked hands;
     const Vector3d begin(0.5, 0.0, 0.0);

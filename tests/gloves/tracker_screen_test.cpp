@@ -166,11 +166,11 @@ TEST_SUITE("wrist_notices") {
     const auto back = next(false, 10ms);
     REQUIRE(back.size() == 1);
     CHECK(back[0] == "the left wrist is back");
-    hand.flips = 3;
+    hand.pose_counts.flips = 3;
     const auto flips = next(false, 10ms);
     REQUIRE(flips.size() == 1);
     CHECK(flips[0].find("hemisphere=") != std::string::npos);
-    hand.flips = 9;
+    hand.pose_counts.flips = 9;
     CHECK(next(false, 10s).empty());
   }
 }

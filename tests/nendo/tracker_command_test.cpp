@@ -233,7 +233,10 @@ TEST_SUITE("tracker commands") {
       for (const auto* none : {"flips", "releases"})
         CHECK(wrist[none] == 0);
       CHECK(wrist["lost"] == false);
-      CHECK(json::parse(lines_of(done.out).front())[side]["wrist_lost"].is_boolean());
+      const json progress = json::parse(lines_of(done.out).front())[side];
+      CHECK(progress["wrist_lost"].is_boolean());
+      CHECK(progress["poses"].get<int>() <= wrist["poses"].get<int>());
+      CHECK(progress["refused_poses"].get<int>() <= wrist["refused_poses"].get<int>());
     }
     CHECK(summary["pose_to_frame_ms"]["count"].get<int>() > 50);
     CHECK(summary["pose_age_ms"]["p50"].get<double>() >=

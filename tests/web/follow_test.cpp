@@ -53,7 +53,7 @@ struct Followed {
       CHECK(client.take(shape->message));
       feed.shape_sent(shape->number);
     }
-    if (const auto update = feed.update(records, {streamed.stream->lost(), {}}))
+    if (const auto update = feed.update(records, streamed.stream->lost()))
       CHECK(client.take(*update));
     if (feed.wants_shape()) streamed.stream->request_shape();
   }
@@ -283,7 +283,7 @@ TEST_SUITE("follow") {
         followed.pass();
         most = std::max(most, followed.client.update_bytes);
       }
-      CHECK(most > 112 + 2 * 126);
+      CHECK(most > 72 + 2 * 126);
       CHECK(most < 1000);
       const auto& chain = streamed.test.loop->frames().front().chain;
       const bool in_links = way.second && way.first == flow::Mode::type1;

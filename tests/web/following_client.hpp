@@ -24,7 +24,7 @@ public:
     Bytes in{model};
     const std::string magic(reinterpret_cast<const char*>(model.data()), 8);
     in.at = 8;
-    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 7;
+    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 8;
     const auto vertices = in.take<std::uint32_t>();
     const auto triangles = in.take<std::uint32_t>();
     const auto name_bytes = in.take<std::uint32_t>();
@@ -70,7 +70,8 @@ public:
     if (type == 6) take_weights(in);
     if (type == 7) take_puppet(in);
     if (type == 9) take_commands(in);
-    return type >= 1 && type <= 9 && type != 8 && in.at == message.size();
+    if (type == 10) devices = take_text(in);
+    return type >= 1 && type <= 10 && type != 8 && in.at == message.size();
   }
 
   /// The shape, in the mesh's order and units.
@@ -123,8 +124,7 @@ public:
   std::array<std::array<Eigen::Vector3d, 26>, 2> joints{};
   std::array<std::array<Eigen::Quaterniond, 26>, 2> turns{};
   std::array<Eigen::Quaterniond, 2> forearms{};
-  std::array<bool, 2> present{}, other_bones{}, uncalibrated{};
-  std::array<std::uint32_t, 2> bad{}, delivered{}, missed{}, refused{}; ///< records of the gloves
+  std::array<bool, 2> present{}, other_bones{}, wrist_lost{};
   std::size_t update_bytes = 0;
   int shapes = 0, updates = 0;
   int weights = 0;                ///< messages of them
@@ -132,6 +132,7 @@ public:
   std::array<bool, 2> released{}; ///< released hands of a puppet
   bool symmetric = false, is_puppet = false;
   std::string report;                ///< the last report of the server
+  std::string devices;               ///< the text of the last devices message
   std::uint64_t implied_centres = 0; ///< centres that were left out
 
 private:
@@ -260,7 +261,6 @@ private:
     update_bytes = in.bytes.size();
     const auto state = in.take<std::uint8_t>();
     held = (state & 1U) != 0;
-    uncalibrated = {(state & 2U) != 0, (state & 4U) != 0};
     released = {(state & 16U) != 0, (state & 32U) != 0};
     symmetric = (state & 64U) != 0;
     is_puppet = (state & 128U) != 0;
@@ -275,13 +275,11 @@ private:
     in.at = 60;
     lost = in.take<std::uint32_t>();
     skipped = in.take<std::uint32_t>();
-    in.at = 80;
-    for (auto* counts : {&bad, &delivered, &missed, &refused})
-      for (std::uint32_t& count : *counts)
-        count = in.take<std::uint32_t>();
+    in.at = 72;
     for (unsigned slot = 0; slot < 2; ++slot) {
       present[slot] = (hands >> slot & 1U) != 0;
       other_bones[slot] = (hands >> slot & 16U) != 0;
+      wrist_lost[slot] = (hands >> slot & 64U) != 0;
       if (present[slot]) take_hand(in, slot);
     }
     for (std::uint32_t step = 0; step < step_count; ++step)

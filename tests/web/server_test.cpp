@@ -40,26 +40,19 @@ TEST_SUITE("server") {
     CHECK(server->url() == "http://" + server->endpoint().authority() + "/#" + server->token());
   }
 
-  TEST_CASE(
-      "a client hears of each loss of a glove's records by its own name, and who is uncalibrated") {
+  TEST_CASE("a client gets the lines about gloves and trackers at once, and after each change") {
     Served served(flow::Mode::type1);
-    served.server->set_gloves({{{{359, 98, 7, 12}, false}, {{1000, 0, 1, 2}, true}}});
+    const std::string first = "left\tleft glove: sim: a hand\t90.0/s, 8 ms old\n";
+    served.server->set_devices(first);
     served.begin();
     Viewer viewer(served);
-    CHECK(viewer.follow_until([&] { return viewer.updates > 0; }));
-    const auto pair = [](std::uint32_t left, std::uint32_t right) {
-      return std::array<std::uint32_t, 2>{left, right};
-    };
-    CHECK(viewer.delivered == pair(359, 1000));
-    CHECK(viewer.missed == pair(98, 0));
-    CHECK(viewer.refused == pair(7, 1));
-    CHECK(viewer.bad == pair(12, 2));
-    CHECK(viewer.uncalibrated == std::array{false, true});
+    CHECK(viewer.follow_until([&] { return viewer.updates > 0 && viewer.devices == first; }));
     CHECK(viewer.held);
-    served.server->set_gloves({{{{400, 99, 7, 12}, true}, {{1001, 0, 1, 2}, false}}});
-    CHECK(viewer.follow_until([&] { return viewer.delivered == pair(400, 1001); }));
-    CHECK(viewer.missed == pair(99, 0));
-    CHECK(viewer.uncalibrated == std::array{true, false});
+    const std::string second = first + "left\tleft wrist: sim:orbit?station=1: a tracker\tlost\n";
+    served.server->set_devices(second);
+    CHECK(viewer.follow_until([&] { return viewer.devices == second; }));
+    Viewer late(served);
+    CHECK(late.follow_until([&] { return late.devices == second; }));
   }
 
   TEST_CASE("a wrong origin, host or token is refused, and there is nothing before a loop begins") {

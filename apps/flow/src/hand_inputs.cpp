@@ -237,8 +237,9 @@ void HandInputs::show(const LoopStats& stats, Frame& frame) const noexcept {
   for (std::size_t at = 0; at < hands_.size(); ++at) {
     const GloveHand& hand = hands_[at];
     if (hand.input.layer && hand.input.layer->on) frame.layers_on |= 1U << at;
-    if (!hand.is_lowest) continue;
     HandFrame& shown = frame.hands[hand.slot];
+    if (hand.is_topmost) shown.newest_sample = hand.latest.arrival;
+    if (!hand.is_lowest) continue;
     const puppet::HandState& state = states_[hand.slot];
     shown.angles = state.angles;
     shown.pose = state.pose;

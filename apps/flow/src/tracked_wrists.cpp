@@ -70,11 +70,13 @@ void TrackedWrists::restart() noexcept {
 }
 
 void TrackedWrists::show(Side side, HandFrame& frame) const noexcept {
-  frame.tracked = has(side);
-  frame.lost = frame.tracked && of(side)->tracking.is_lost();
-  if (!frame.tracked) return;
-  frame.tracked_at = of(side)->tracking.latest().measured;
-  frame.flips = of(side)->counts().flips;
+  const auto& wrist = of(side);
+  frame.tracked = wrist.has_value();
+  if (!wrist) return;
+  frame.lost = wrist->tracking.is_lost();
+  frame.pose_counts = wrist->counts();
+  frame.newest_pose = wrist->tracking.latest().arrival;
+  frame.tracked_at = wrist->tracking.latest().measured;
 }
 
 void TrackedWrists::record_latencies(HostTime done, LoopStats& stats) const noexcept {

@@ -84,6 +84,7 @@ function open(model) {
     else if (type === 6) takeWeights(readWeights(data), model)
     else if (type === 8) takeClay(readClay(data))
     else if (type === 9) panel.setStates(readCommands(data))
+    else if (type === 10) panel.setDevices(readDevices(data))
     else if (type === 1) stale = !takeShape(readShape(data), model)
     else takeUpdate(readUpdate(data, model))
     if (stale) socket.close()

@@ -183,7 +183,7 @@ class Panel {
       `${lost > 0 ? `, ${lost} not shown` : ''}\n${update.restChanges} changes of the rest shape`
     this.drawClay()
     for (const chart of [this.late, this.rate, this.bytes]) chart.draw()
-    update.hands.forEach((hand, slot) => this.drawGlove(hand, slot))
+    update.hands.forEach((hand, slot) => this.drawHand(hand, slot))
   }
   drawClay() {
     const { clay, settings, model } = this
@@ -193,22 +193,27 @@ class Panel {
     element('clay-state').textContent = `touches at ${clay.contacts.length} places, ${clay.penetration.toFixed(3)} mm deep\n` +
       (clay.first > 0 ? `volume ${cm3(clay.volume)} cm\u00b3, at first ${cm3(clay.first)}` : 'volume not kept: no closed surface')
   }
-  drawGlove(hand, slot) {
-    const id = 'glove-' + slot
-    let part = element(id)
-    if (!part) {
-      part = element('gloves').appendChild(document.createElement('div'))
-      Object.assign(part, { id, className: 'glove' })
-      part.appendChild(document.createElement('span'))
-      part.appendChild(document.createElement('canvas')).className = 'bars'
-    }
+  partOf(slot) {
+    const id = 'hand-' + slot
+    if (element(id)) return element(id)
+    const part = element('hands').appendChild(document.createElement('div'))
+    Object.assign(part, { id, className: 'hand', hidden: true })
+    part.appendChild(document.createElement('div'))
+    part.appendChild(document.createElement('canvas')).className = 'bars'
+    return part
+  }
+  setDevices(devices) {
+    devices.forEach((ofHand, slot) => this.partOf(slot).firstChild.replaceChildren(...ofHand.map(({ title, state }) => {
+      const line = document.createElement('div')
+      line.textContent = `${title}\n${state}`
+      return line
+    })))
+  }
+  drawHand(hand, slot) {
+    const part = this.partOf(slot)
     part.hidden = !hand
     if (!hand) return
-    part.className = hand.silent || hand.wristLost ? 'glove silent' : 'glove'
-    const { sent, delivered, missed, refused, bad } = hand.records
-    part.firstChild.textContent = `${slot === 0 ? 'left' : 'right'}: ${hand.samples} samples${hand.silent ? ', silent' : ''}${hand.wristLost ? ', wrist lost' : ''}${hand.uncalibrated ? ', uncalibrated' : ''}; ` +
-      (missed === 0xFFFFFFFF ? `${delivered} delivered, losses on the line unknown`
-        : `${sent} sent, ${delivered} delivered, ${missed} missed`) + `, ${refused} refused, ${bad} bad records`
+    part.className = hand.silent || hand.wristLost ? 'hand silent' : 'hand'
     drawBends(part.lastChild, hand)
   }
 }

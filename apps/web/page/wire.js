@@ -1,6 +1,6 @@
 // What comes from the server: PROTOCOL.md, byte for byte.
 const JOINTS = 26
-const MODEL_HEAD = 88, BONE_BYTES = 28, COAT_BYTES = 24, UPDATE_HEAD = 112, NO_TEXTURE = 0xffffffff
+const MODEL_HEAD = 88, BONE_BYTES = 28, COAT_BYTES = 24, UPDATE_HEAD = 72, NO_TEXTURE = 0xffffffff
 // Of each joint, whose place hangs on it; the wrist's on none.
 const PARENTS = [1, -1, 1, 2, 3, 4, 1, 6, 7, 8, 9, 1, 11, 12, 13, 14, 1, 16, 17, 18, 19, 1, 21, 22, 23, 24]
 const TIPS = [5, 10, 15, 20, 25]
@@ -11,7 +11,7 @@ function readModel(buffer) {
   const view = new DataView(buffer)
   const text = (at, count) => new TextDecoder().decode(new Uint8Array(buffer, at, count))
   if (buffer.byteLength < MODEL_HEAD || text(0, 8) !== 'NENDOWEB') throw new Error('this server is no nendo')
-  if (view.getUint32(8, true) !== 7) throw new Error('this server speaks another version; reload the page')
+  if (view.getUint32(8, true) !== 8) throw new Error('this server speaks another version; reload the page')
   const vertices = view.getUint32(12, true), triangles = view.getUint32(16, true)
   const flags = view.getUint8(82), bones = [null, null]
   let places = MODEL_HEAD
@@ -61,7 +61,7 @@ function readBones(view, at) {
   })
 }
 
-// What follows the first four bytes of a report, of the settings and of the commands.
+// What follows the first four bytes of a report, of the settings, of the commands and of the devices.
 const textIn = buffer => new TextDecoder().decode(buffer.slice(4))
 
 // The values of settings by their names, as `settings` sends them; radii are numbers.
@@ -76,6 +76,16 @@ function readCommands(buffer) {
     const [name, on, refusal] = line.split('\t')
     return [name, { isOn: on === 'on', refusal }]
   }))
+}
+
+// Of each hand: its glove, and the station of a tracker that moves its wrist.
+function readDevices(buffer) {
+  const devices = [[], []]
+  for (const line of textIn(buffer).split('\n').slice(0, -1)) {
+    const [side, title, state] = line.split('\t')
+    devices[side === 'left' ? 0 : 1].push({ title, state })
+  }
+  return devices
 }
 
 const STEPS = ['stroke', 'reset', 'mode', 'kernel', 'radius', 'folding', 'filter', 'settings', 'subdivide', 'brush', 'puppet', 'volume', 'hold', 'mask', 'symmetry', 'refine', 'cut', 'join', 'copy', 'remove', 'topology']
@@ -217,10 +227,6 @@ function readUpdate(buffer, model) {
     const hand = readHand(view, at, model.bones[slot][bits & 16 << slot ? 1 : 0])
     hand.silent = (bits & 4 << slot) !== 0
     hand.wristLost = (bits & 64 << slot) !== 0
-    hand.uncalibrated = (state & 2 << slot) !== 0
-    hand.samples = u32(72 + 4 * slot)
-    const [bad, delivered, missed, refused] = [80, 88, 96, 104].map(first => u32(first + 4 * slot))
-    hand.records = { bad, delivered, missed, refused, sent: delivered + missed }
     update.hands[slot] = hand
     at += hand.bytes
   }

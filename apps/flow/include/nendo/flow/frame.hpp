@@ -20,6 +20,7 @@
 #include <nendo/flow/step.hpp>
 #include <nendo/flow/wire_path.hpp>
 #include <nendo/hand/skeleton.hpp>
+#include <nendo/hand/wrist_tracking.hpp>
 #include <nendo/puppet/puppet.hpp>
 
 namespace nendo::flow {
@@ -34,13 +35,15 @@ struct HandFrame {
   /// The hand's pose on the stage. Measured wrist joints, if any, rotate the hand relative to it.
   Eigen::Isometry3d T_stage_wrist = Eigen::Isometry3d::Identity();
   std::uint64_t samples = 0;  ///< received since the loop began
+  HostTime newest_sample{};   ///< the arrival of the newest sample
+  HostTime sampled{};         ///< when the newest sample was measured
   hand::JointAngles angles{}; ///< the angles of the pose
-  SensorMask sensors{};       ///< of its glove's newest sample
+  SensorMask sensors{};       ///< of the newest sample
   SensorMask left_out{};      ///< stuck sensors of its glove, whose angles are estimated
-  WristSwitch wrist_switch = WristSwitch::unknown; ///< in its glove's newest sample
-  HostTime sampled{};         ///< when its glove's newest sample was measured
-  HostTime tracked_at{};      ///< when the newest good pose of its tracker was measured, if any
-  std::uint64_t flips = 0;    ///< poses of a tracked wrist that were mirrored back
+  WristSwitch wrist_switch = WristSwitch::unknown; ///< in the newest sample
+  hand::TrackingCounts pose_counts; ///< the poses of a tracked wrist since the loop began
+  HostTime newest_pose{}; ///< the arrival of the newest good pose of the wrist; 0: none came
+  HostTime tracked_at{};  ///< when that pose was measured
 };
 
 /// The change that an undo or a redo waits for. The loop's owner must request it
