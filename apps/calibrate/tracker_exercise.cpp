@@ -11,6 +11,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/figures.hpp"
+#include "gloves/tracker_text.hpp"
 
 namespace nendo::calibrate {
 namespace {
@@ -140,8 +141,7 @@ Result<RecordedExercise> record_exercise(const driver::TrackerStation& station,
   if (!wait_and_count(recorder, options.duration_s, &exercise, note_rest)) return interrupted;
   if (exercise.poses.empty())
     return Error{Errc::no_device,
-                 printable(station.source) +
-                     ": no pose came; check that the station is plugged in, and near its source"};
+                 printable(station.source) + ": no pose came; " + gloves::no_pose_advice(station)};
   return exercise;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -78,6 +79,25 @@ std::string axes_text(const driver::TrackerInfo& info) {
     text += std::string(axis > 0 ? ", " : "") + "xyz"[axis] + " " + direction;
   }
   return text;
+}
+
+std::string no_pose_advice(const driver::TrackerStation& station) {
+  struct Advice {
+    std::string_view kind;
+    const char* words;
+  };
+  constexpr std::array advices{
+      Advice{"osc", "check that the sender sends the poses of this hand to this port, from this "
+                    "machine or to the address that osc:ADDRESS:PORT names"},
+      Advice{"vrpn", "check that the server tracks this sensor, or name another one"},
+      Advice{"evdev", "plug the device in again"},
+      Advice{"replay", "check that the recording does not begin with a pause"}};
+  const auto spec = driver::parse_device_spec(station.source);
+  const std::string_view kind = spec ? std::string_view(spec->kind) : std::string_view{};
+  const auto* const found = std::ranges::find(advices, kind, &Advice::kind);
+  if (found != advices.end()) return found->words;
+  return "check that the receiver of station " + std::to_string(station.station) +
+         " is plugged in, and near the transmitter, or name another station";
 }
 
 } // namespace nendo::gloves

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <nendo/driver/tracker.hpp>
+#include <nendo/driver/open_tracker.hpp>
 
 namespace nendo::gloves {
 
@@ -35,6 +35,9 @@ nlohmann::ordered_json tracker_json(const driver::TrackerInfo& info);
 /// Returns "x away from the operator, y to the right, z down": how the tracker's axes usually lie
 /// on the stage. A turn that is oblique is returned as a quaternion.
 std::string axes_text(const driver::TrackerInfo& info);
+
+/// Returns what to check if no pose of this station comes, in the imperative.
+std::string no_pose_advice(const driver::TrackerStation& station);
 
 /// What to do if a receiver was in the wrong hemisphere.
 inline constexpr const char* hemisphere_advice =

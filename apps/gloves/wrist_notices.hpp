@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <nendo/base/side.hpp>
+#include <nendo/driver/open_tracker.hpp>
 #include <nendo/flow/frame.hpp>
 
 namespace nendo::gloves {
@@ -19,8 +20,9 @@ public:
   static constexpr std::chrono::milliseconds min_loss{500};
 
   /// Returns a sentence for each of these changes up to the next frame, which is `hand` at `now`.
-  /// A run reports the hemisphere once.
-  std::vector<std::string> changes(Side side, const flow::HandFrame& hand, HostTime now);
+  /// A run reports the hemisphere once. `station` moves the wrist.
+  std::vector<std::string> changes(Side side, const flow::HandFrame& hand, HostTime now,
+                                   const driver::TrackerStation& station);
 
 private:
   std::optional<HostTime> lost_since_;

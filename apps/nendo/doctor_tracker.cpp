@@ -142,9 +142,8 @@ Result<doctor::Examination> check_tracker(const std::string& spec) {
   if (seen.poses == 0) {
     findings.add(doctor::Severity::failure, "no_poses",
                  "it answered as " + printable(info.model) + ", but no pose came within 2 s",
-                 "check that the receiver is plugged in at station " +
-                     std::to_string(poses[0].station) + ", or name another station; `nendo info " +
-                     shell_word(spec) + "` shows what the tracker reports");
+                 gloves::no_pose_advice(poses[0]) + "; `nendo info " + shell_word(spec) +
+                     "` shows what the tracker reports");
     return doctor::Examination{findings.take(), {spec}};
   }
   check_rate(info, seen, findings);

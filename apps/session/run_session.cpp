@@ -239,8 +239,8 @@ private:
     for (const auto& hand : hands_) {
       if (!hand.wrist) continue;
       const std::size_t slot = flow::Placement::index_of(hand.side);
-      for (const std::string& sentence :
-           wrists_[slot].changes(hand.side, frame.hands[slot], frame.scheduled))
+      for (const std::string& sentence : wrists_[slot].changes(
+               hand.side, frame.hands[slot], frame.scheduled, hand.wrist->station))
         report(hand.wrist->station.source + ": " + sentence);
     }
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -151,17 +152,18 @@ TEST_SUITE("wrist_notices") {
     const auto next = [&](bool lost, HostClock::duration later) {
       hand.lost = lost;
       now += later;
-      return notices.changes(Side::left, hand, now);
+      return notices.changes(Side::left, hand, now, {});
     };
     CHECK(next(true, 10s).empty()); // no tracker
     hand.tracked = true;
+    hand.pose_counts.poses = 1;
     CHECK(next(true, 1s).empty());
     CHECK(next(true, 400ms).empty());
     CHECK(next(false, 10ms).empty());
     CHECK(next(true, 1s).empty());
     const auto lost = next(true, 500ms);
     REQUIRE(lost.size() == 1);
-    CHECK(lost[0].find("left wrist") != std::string::npos);
+    CHECK(lost[0] == "no good pose of the left wrist comes: the hand stays where it is");
     CHECK(next(true, 1s).empty());
     const auto back = next(false, 10ms);
     REQUIRE(back.size() == 1);
@@ -172,6 +174,30 @@ TEST_SUITE("wrist_notices") {
     CHECK(flips[0].find("hemisphere=") != std::string::npos);
     hand.pose_counts.flips = 9;
     CHECK(next(false, 10s).empty());
+  }
+
+  TEST_CASE("a wrist of which no pose ever came is reported with what to check, by its tracker") {
+    WristNotices notices;
+    flow::HandFrame hand;
+    hand.tracked = hand.lost = true;
+    for (const auto& [source, said] :
+         {std::pair{"fastrak:/dev/ttyUSB2?station=3", "receiver of station 3"},
+          {"flock:/dev/ttyUSB2?station=3", "near the transmitter"},
+          {"osc:9000/left", "to this port"},
+          {"vrpn:Tracker0@host?sensor=0", "server tracks this sensor"},
+          {"evdev:SpaceMouse", "plug the device in again"},
+          {"replay:take.nendo?hand=left", "recording"}}) {
+      const std::string advice = no_pose_advice({nullptr, 3, source});
+      CAPTURE(advice);
+      CHECK(advice.find(said) != std::string::npos);
+      CHECK(advice.find("interface unit") == std::string::npos);
+    }
+    const driver::TrackerStation station{nullptr, 2, "fastrak:/dev/ttyUSB2?station=2"};
+    CHECK(notices.changes(Side::right, hand, HostTime(1s), station).empty());
+    const auto lost = notices.changes(Side::right, hand, HostTime(2s), station);
+    REQUIRE(lost.size() == 1);
+    CHECK(lost[0] == "no pose of the right wrist comes: the hand stays where it is; " +
+                         no_pose_advice(station));
   }
 }
 

@@ -14,6 +14,18 @@ namespace {
 
 using std::chrono::milliseconds;
 
+/// Returns what to check, as far as the glove's bytes show why no sample came.
+std::string silence_advice(const driver::Glove& glove) {
+  const driver::StreamStats stats = glove.stats();
+  if (glove.info().kind == driver::SourceKind::recorded)
+    return "does its recording begin with a pause?";
+  if (stats.unplugged > 0) return "plug the glove into its interface unit";
+  if (stats.bytes > 0)
+    return "the " + std::to_string(stats.bytes) +
+           " bytes that came are no records of this kind of glove; check its kind and its cable";
+  return "check that it is switched on, and its cable";
+}
+
 Result<void> wait_for_sample(OpenHand& hand, const std::function<bool()>& is_stopped) {
   const double rate_hz = hand.glove->info().rate_hz;
   // A glove whose rate is not known may send one record per second.
@@ -26,8 +38,8 @@ Result<void> wait_for_sample(OpenHand& hand, const std::function<bool()>& is_sto
   }
   if (stops()) return Error{Errc::failed, "stopped before the first sample came"};
   return Error{Errc::no_device, hand.glove->info().source + ": opened, but no sample came within " +
-                                    std::to_string(static_cast<int>(patience_s)) +
-                                    " s; is the glove plugged into its interface unit?"};
+                                    std::to_string(static_cast<int>(patience_s)) + " s; " +
+                                    silence_advice(*hand.glove)};
 }
 
 /// Notes why gloves that are plugged in do not take part.
