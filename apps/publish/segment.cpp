@@ -281,7 +281,7 @@ PublishedRadii radii_of(const LoopOutline& outline) {
   return radii;
 }
 
-// The radii of joints follow the setup, whose stage guards them, too.
+// The radii of joints follow the setup. Its stage also guards them.
 constexpr std::size_t radii_offset = sizeof(nendo_publish_header) + sizeof(nendo_publish_setup);
 
 // The word that `state` shares with a reserved number.
