@@ -38,7 +38,7 @@ struct HandFrame {
   HostTime newest_sample{};   ///< the arrival of the newest sample
   HostTime sampled{};         ///< when the newest sample was measured
   hand::JointAngles angles{}; ///< the angles of the pose
-  SensorMask sensors{};       ///< of the newest sample
+  SensorMask sensors{};       ///< the sensors in the newest sample
   SensorMask left_out{};      ///< stuck sensors of its glove, whose angles are estimated
   WristSwitch wrist_switch = WristSwitch::unknown; ///< in the newest sample
   hand::TrackingCounts pose_counts; ///< the poses of a tracked wrist since the loop began
