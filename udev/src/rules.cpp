@@ -46,7 +46,7 @@ std::string by_name(std::string_view word) {
 
 /// Returns the rules for event nodes. An input device with six axes has the codes 0 to 5 of ABS_
 /// or, with older kernels, of REL_, whose bits are the last digits of the device's capabilities.
-std::string space_mice() {
+std::string space_mouse_rules() {
   std::string rules;
   for (const SpaceMouseNumbers& numbers : space_mouse_numbers())
     for (const std::string axes : {"abs", "rel"})
@@ -74,7 +74,7 @@ std::string identification() {
       "GOTO=\"nendo_end\"\n\n"
       "# SpaceMice, which move wrists. Their makers' keyboards and mice do not have six axes.\n"
       "LABEL=\"nendo_input\"\n" +
-      space_mice() +
+      space_mouse_rules() +
       "GOTO=\"nendo_end\"\n\n"
       "# Gloves with USB numbers of their own.\n"
       "LABEL=\"nendo_usb\"\n";
