@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -103,9 +104,15 @@ TEST_SUITE("pose_gate") {
           if (in_bursts && lost > 0.0) continue;
           PoseGate gate;
           std::mt19937 random(1);
+          std::uint64_t missing = 0;
+          std::uint64_t doubted = 0;
+          bool was_doubted = false;
           for (int n = 0; n < 10 * rate_hz; ++n) {
             const double time_s = n / rate_hz;
-            if (std::uniform_real_distribution<>(0.0, 1.0)(random) < lost) continue;
+            if (std::uniform_real_distribution<>(0.0, 1.0)(random) < lost) {
+              ++missing;
+              continue;
+            }
             // An adapter that delivers every 16 ms: what it delivers at once has the same time.
             const double stamp_s = in_bursts ? std::ceil(time_s / 0.016) * 0.016 : time_s;
             PoseSample sample =
@@ -114,11 +121,17 @@ TEST_SUITE("pose_gate") {
             CAPTURE(rate_hz);
             CAPTURE(in_bursts);
             CAPTURE(n);
-            REQUIRE(passed);
+            // Where a record is missing, one more may be refused.
+            if (std::exchange(was_doubted, !passed) || missing == 0) REQUIRE(passed);
+            if (!passed) {
+              ++doubted;
+              continue;
+            }
             REQUIRE(passed->position_m == sample.position_m);
             REQUIRE(turn_of(*passed).angularDistance(stroke_turn(time_s)) < 1e-7);
           }
-          CHECK(gate.refused() == 0);
+          CHECK(gate.refused() == doubted);
+          CHECK(3 * doubted <= missing);
           CHECK(gate.flips() == 0);
         }
       }
@@ -176,6 +189,59 @@ TEST_SUITE("pose_gate") {
     CHECK_FALSE(turned.pass(turned.position_m, turn));
     CHECK(turned.pass(turned.position_m, Quaterniond(-1.0, 0.0, 0.0, 0.0))); // the same turn
     CHECK(turned.gate.refused() == 1);
+  }
+
+  TEST_CASE("after damage that looks like a movement, the good poses pass") {
+    for (const double damage_m : {0.0085, -0.0085}) {
+      Rested rested;
+      CHECK(rested.pass(rested.position_m + Vector3d(0.0, damage_m, 0.0)));
+      for (int n = 0; n < 100; ++n)
+        CHECK(rested.pass(rested.position_m));
+    }
+  }
+
+  TEST_CASE("where a record is missing, a pose 12 mm off is refused once, and a good one passes") {
+    const Vector3d off_m(0.0, 0.013, 0.0);
+    for (const bool is_damage : {true, false}) {
+      Rested rested;
+      rested.next_s += 2.0 * Rested::period_s; // half of 30 m/s^2 for 25 ms are 9 mm
+      CHECK_FALSE(rested.pass(rested.position_m + off_m));
+      for (int n = 0; n < 20; ++n) // a hand that moved stays there
+        CHECK(rested.pass(rested.position_m + (is_damage ? Vector3d(0.0, 0.0, 0.0) : off_m)));
+      CHECK(rested.gate.refused() == 1);
+    }
+    Rested rested;
+    rested.next_s += 2.0 * Rested::period_s;
+    CHECK(rested.pass(rested.position_m + Vector3d(0.0, 0.011, 0.0)));
+  }
+
+  TEST_CASE("a flipped sign in a quaternion is refused, and fast turns of a hand pass") {
+    for (const double rate_hz : {30.0, 60.0, 120.0}) {
+      for (int component = 0; component < 4; ++component) {
+        PoseGate gate;
+        Quaterniond turn(0.7, 0.7, 0.7, 0.7);
+        turn.coeffs()[component] = 0.06; // 0.24 rad
+        turn.normalize();
+        Quaterniond damaged = turn;
+        damaged.coeffs()[component] *= -1.0;
+        for (int n = 0; n < 40; ++n) {
+          const bool is_damaged = n % 10 == 9;
+          const bool passed =
+              gate.pass(sample_at(n / rate_hz, {0.4, 0.2, -0.1}, is_damaged ? damaged : turn))
+                  .has_value();
+          CHECK(passed == !is_damaged);
+        }
+      }
+      for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 0, 1), Vector3d(1, 2, 2)}) {
+        PoseGate gate;
+        const double swing_rad_s = rate_hz < 50.0 ? 20.0 : 40.0; // 12 or 24 rad/s at the peaks
+        for (int n = 0; n < 10 * rate_hz; ++n) {
+          const double angle_rad = 0.6 * std::sin(swing_rad_s * n / rate_hz);
+          CHECK(gate.pass(sample_at(n / rate_hz, {0.4, 0.2, -0.1},
+                                    Quaterniond(Eigen::AngleAxisd(angle_rad, axis.normalized())))));
+        }
+      }
+    }
   }
 
   TEST_CASE("after five refusals in a row the gate gives in, and follows what comes then") {
@@ -317,8 +383,8 @@ TEST_SUITE("pose_gate") {
       MESSAGE(rate_hz << " Hz: worst " << 1e3 * worst_m << " mm, " << worst_rad << " rad; " << lost
                       << " of " << good << " good records refused");
       CHECK(worst_m < 0.015);
-      CHECK(worst_rad < 0.7);
-      CHECK(lost < 0.01 * good);
+      CHECK(worst_rad < 0.15);
+      CHECK(lost < 0.001 * good);
     }
   }
 

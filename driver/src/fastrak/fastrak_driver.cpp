@@ -1,3 +1,5 @@
+#include "fastrak/fastrak_driver.hpp"
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -62,6 +64,10 @@ private:
 
 } // namespace
 
+std::unique_ptr<TrackerProtocol> make_protocol(Options options) {
+  return std::make_unique<FastrakProtocol>(std::move(options));
+}
+
 Result<std::unique_ptr<Tracker>> open_fastrak(const DeviceSpec& spec,
                                               std::span<const std::uint16_t> stations) {
   auto options = polhemus::options_of(spec, stations, {115'200, 57'600, 38'400, 19'200, 9'600});
@@ -72,8 +78,7 @@ Result<std::unique_ptr<Tracker>> open_fastrak(const DeviceSpec& spec,
     return Error{Errc::usage, spec.text + ": " + *why};
   const int baud = options->baud.value_or(bauds.front());
   return open_stream_tracker(spec.text, follow_port(spec.target, baud),
-                             std::make_unique<FastrakProtocol>(*std::move(options)),
-                             HostClock::now() + open_budget);
+                             make_protocol(*std::move(options)), HostClock::now() + open_budget);
 }
 
 } // namespace nendo::driver::fastrak
