@@ -206,20 +206,22 @@ TEST_SUITE("publish_program") {
         for (const std::string side : {"left", "right"})
           compare(line["number"], side, line[side]);
       CHECK(compared > 0);
-      std::set<std::array<float, 3>> right_tips;
-      for (const auto& [key, tip] : tips)
-        if (key.second == "right")
-          right_tips.insert(
-              {static_cast<float>(tip[0]), static_cast<float>(tip[1]), static_cast<float>(tip[2])});
-      std::size_t known = 0, received = 0;
+      std::set<std::array<float, 3>> sent_tips;
+      std::size_t received = 0;
       for (const auto& message : objects_in(contents(osc.out()))) {
         if (message["address"] != "/nendo/right/index/tip") continue;
         ++received;
-        known += right_tips.count(message["arguments"].get<std::array<float, 3>>());
+        sent_tips.insert(message["arguments"].get<std::array<float, 3>>());
       }
       CHECK(received <= to[1]["records"]);
-      // The reader of the segment may miss a record, and OSC has those before it was there.
-      CHECK(known > received / 2);
+      std::size_t known = 0, right_tips = 0;
+      for (const auto& [key, tip] : tips) {
+        if (key.second != "right") continue;
+        ++right_tips;
+        known += sent_tips.count(
+            {static_cast<float>(tip[0]), static_cast<float>(tip[1]), static_cast<float>(tip[2])});
+      }
+      CHECK(known > 9 * right_tips / 10); // the network of this machine may lose some
 
       // And the shape is the file's; type 2 leaves a little of its last strokes waiting until then.
       const auto written = coordinates_in(contents(folder.path() / "shape.obj"));

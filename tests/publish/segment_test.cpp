@@ -143,9 +143,9 @@ TEST_SUITE("segment") {
   TEST_CASE("a reader gets the radii of joints, and neither they nor states from an older writer") {
     LoopUnderTest test(Mode::type1, {.rings_of_ball = 8});
     SegmentPublisher publisher(segment_name("radii"), {});
+    test::attach(test, {&publisher});
     auto outline = test::outline_of(test);
     outline.skeletons = {std::nullopt, hand::HandSkeleton(Side::right, {.length_m = 0.2})};
-    test::attach(test, {&publisher});
     REQUIRE(publisher.begin(outline));
     const MappedSegment segment(segment_name("radii"));
     float radii[2][NENDO_PUBLISH_JOINTS];
