@@ -1,5 +1,7 @@
 #include <nendo/flow/deform_loop.hpp>
 
+#include <cstdlib>
+#include <random>
 #include <thread>
 
 #include <doctest/doctest.h>
@@ -387,7 +389,7 @@ TEST_SUITE("deform_loop") {
     std::mt19937 random(9);
     Eigen::Vector3d before = Eigen::Vector3d::Zero();
     for (std::uint64_t tick = 0; tick < 300; ++tick) {
-      test.bend(static_cast<int>(tick % 60), HostClock::now());
+      test.bend(std::abs(30 - static_cast<int>(tick % 60)), HostClock::now());
       test.commands.try_push(flow::requests[random() % flow::requests.size()]);
       const flow::Frame& frame = test.frame_after_tick(tick);
       CHECK(frame.shape.block_count() == 0);
