@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -42,7 +43,7 @@ struct Shown {
     info.model = "Polhemus FASTRAK";
     info.rate_hz = 120.0;
     for (int pose = 0; pose <= 60; ++pose)
-      seen[0].add(any_pose(now + pose * 1s / 60));
+      seen[0].add(any_pose(now + pose * std::chrono::nanoseconds(1s) / 60));
     now += 1s + 12ms;
   }
   std::vector<std::string> lines(int columns = 80, int rows = 24) const {
