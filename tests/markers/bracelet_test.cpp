@@ -66,7 +66,7 @@ TEST_SUITE("bracelet") {
         for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
           const double px = 2 * 96 * corners[corner][axis] / 0.0254 - 0.5;
           const double seen =
-              double{axis == 0 ? marker.corners[corner].x : marker.corners[corner].y};
+              static_cast<double>(axis == 0 ? marker.corners[corner].x : marker.corners[corner].y);
           CHECK(std::abs(seen - px) < 1.5);
         }
     }
