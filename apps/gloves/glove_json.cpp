@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 #include <nendo/hand/angle_sources.hpp>
@@ -10,7 +11,6 @@
 #include "cli/cli.hpp"
 
 namespace nendo::gloves {
-namespace {
 
 using nlohmann::ordered_json;
 
@@ -19,13 +19,47 @@ ordered_json switch_json(WristSwitch position) {
   return position == WristSwitch::on ? "on" : "off";
 }
 
-} // namespace
-
 ordered_json sensors_json(SensorMask sensors) {
   ordered_json names = ordered_json::array();
   for (const Sensor sensor : sensors)
     names.push_back(name_of(sensor));
   return names;
+}
+
+ordered_json glove_json(const driver::GloveInfo& info) {
+  ordered_json facts = ordered_json::object();
+  for (const auto& [name, value] : info.facts)
+    facts[name] = value;
+  const driver::Abilities& can = info.abilities;
+  return {
+      {"source", info.source},
+      {"model", info.model},
+      {"hand", name_of(info.side)},
+      {"sensors", sensors_json(info.sensors)},
+      {"angles", angle_sources_json(info.sensors)},
+      {"rate_hz", info.rate_hz},
+      {"counts", {{"most", info.counts.max_count}, {"whole_range", info.counts.self_calibrated}}},
+      {"abilities",
+       {{"wrist_switch", can.wrist_switch},
+        {"light", can.light},
+        {"vibration", can.vibration},
+        {"resistance", can.resistance}}},
+      {"facts", std::move(facts)}};
+}
+
+ordered_json joints_json(const hand::HandPose& pose) {
+  ordered_json joints = ordered_json::object();
+  for (std::size_t at = 0; at < hand::joint_count; ++at) {
+    const Eigen::Isometry3d& joint = pose.joints[at];
+    const Eigen::Vector3d position = joint.translation();
+    Eigen::Quaterniond q(joint.linear());
+    q.normalize();
+    if (q.w() < 0.0) q.coeffs() = -q.coeffs(); // both are the same turn
+    joints[std::string(name_of(static_cast<hand::Joint>(at)))] = {
+        {"position_m", {position.x(), position.y(), position.z()}},
+        {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+  }
+  return joints;
 }
 
 ordered_json angle_sources_json(SensorMask sensors, SensorMask left_out) {

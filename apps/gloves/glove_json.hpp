@@ -6,9 +6,11 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <nendo/driver/glove.hpp>
 #include <nendo/driver/record_counts.hpp>
 #include <nendo/driver/sample.hpp>
 #include <nendo/hand/calibration.hpp>
+#include <nendo/hand/skeleton.hpp>
 #include <nendo/sculpting/find_wearer.hpp>
 
 namespace nendo::gloves {
@@ -18,6 +20,17 @@ namespace nendo::gloves {
 nlohmann::ordered_json angle_sources_json(SensorMask sensors, SensorMask left_out = {});
 
 nlohmann::ordered_json sensors_json(SensorMask sensors);
+
+/// Returns "on", "off", or null if the glove does not report the switch.
+nlohmann::ordered_json switch_json(WristSwitch position);
+
+/// Returns an object with the keys source, model, hand, sensors, angles (angle_sources_json()),
+/// rate_hz, counts (most, whole_range), abilities and facts.
+nlohmann::ordered_json glove_json(const driver::GloveInfo& info);
+
+/// Returns an object with OpenXR's names of joints in OpenXR's order, each with position_m [x, y,
+/// z] and orientation_xyzw, a unit quaternion whose w is not negative.
+nlohmann::ordered_json joints_json(const hand::HandPose& pose);
 
 /// Adds the counts to an object, under the names of driver::by_name().
 void add_counts(nlohmann::ordered_json& object, const driver::RecordCounts& counts);

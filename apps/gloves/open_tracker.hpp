@@ -17,7 +17,7 @@ namespace nendo::gloves {
 
 /// Returns whether an argument for a device is a TRACKER: its kind is one of trackers and not one
 /// of gloves, or it is `sim` with a motion that only trackers have. An argument that can be both,
-/// such as `replay`, is a TRACKER if the user says it (--tracker, `is_said`).
+/// such as `replay` and `serve`, is a TRACKER if the user says it (--tracker, `is_said`).
 bool is_tracker(std::string_view spec, bool is_said);
 
 /// Adds the flag --tracker, which sets `is_said`.

@@ -91,14 +91,14 @@ bool is_on_hand(const Options& options, const Gloved& gloved) {
 
 Result<fs::path> path_of(const Options& options, const driver::TrackerStation& station, Side side) {
   if (!options.out.empty()) return fs::path(options.out);
-  return hand::own_mount_path(station.source, station.station, side);
+  return hand::own_mount_path(station.mount_source(), station.mount_station(), side);
 }
 
 Result<void> write_result(const Options& options, const driver::TrackerStation& station, Side side,
                           const hand::TrackerCalibration& made) {
   hand::TrackerMount file;
-  file.tracker = hand::tracker_name(station.source);
-  file.station = station.station;
+  file.tracker = hand::tracker_name(station.mount_source());
+  file.station = station.mount_station();
   file.side = side;
   hand::set_mount(file, made.mount);
   file.residual_mm = made.report.residual_mm;

@@ -43,28 +43,11 @@ std::vector<std::string> names_of(SensorMask mask) {
 }
 
 void print_json(const driver::GloveInfo& info, const std::vector<gloves::SensorAtEnd>& at_end) {
-  ordered_json facts = ordered_json::object();
-  for (const auto& [name, value] : info.facts)
-    facts[name] = value;
-  const driver::Abilities& can = info.abilities;
   ordered_json ends = ordered_json::object();
   for (const auto& [sensor, count] : at_end)
     ends[std::string(name_of(sensor))] = count;
-  const ordered_json line{
-      {"source", info.source},
-      {"model", info.model},
-      {"hand", name_of(info.side)},
-      {"sensors", names_of(info.sensors)},
-      {"angles", gloves::angle_sources_json(info.sensors)},
-      {"rate_hz", info.rate_hz},
-      {"counts", {{"most", info.counts.max_count}, {"whole_range", info.counts.self_calibrated}}},
-      {"abilities",
-       {{"wrist_switch", can.wrist_switch},
-        {"light", can.light},
-        {"vibration", can.vibration},
-        {"resistance", can.resistance}}},
-      {"at_end", std::move(ends)},
-      {"facts", std::move(facts)}};
+  ordered_json line = gloves::glove_json(info);
+  line["at_end"] = std::move(ends);
   // A device's text need not be UTF-8.
   cli::print_line(line);
 }

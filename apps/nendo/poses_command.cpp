@@ -113,20 +113,9 @@ nlohmann::ordered_json deviations_json(const hand::JointAngles& angles, SensorMa
 std::string pose_json(HostTime time, Side side, const hand::HandPose& pose,
                       const hand::JointAngles& angles, SensorMask sensors, SensorMask left_out,
                       bool is_first) {
-  nlohmann::ordered_json joints = nlohmann::ordered_json::object();
-  for (std::size_t at = 0; at < hand::joint_count; ++at) {
-    const Eigen::Isometry3d& joint = pose.joints[at];
-    const Eigen::Vector3d position = joint.translation();
-    Eigen::Quaterniond q(joint.linear());
-    q.normalize();
-    if (q.w() < 0.0) q.coeffs() = -q.coeffs(); // both are the same turn
-    joints[std::string(name_of(static_cast<hand::Joint>(at)))] = {
-        {"position_m", {position.x(), position.y(), position.z()}},
-        {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
-  }
   nlohmann::ordered_json line{{"time_s", to_seconds(time.time_since_epoch())},
                               {"hand", name_of(side)},
-                              {"joints", std::move(joints)}};
+                              {"joints", gloves::joints_json(pose)}};
   if (auto deviations = deviations_json(angles, sensors, left_out); !deviations.empty())
     line["deviations_deg"] = std::move(deviations);
   if (left_out.bits != 0) line["left_out"] = gloves::sensors_json(left_out);
@@ -135,8 +124,7 @@ std::string pose_json(HostTime time, Side side, const hand::HandPose& pose,
 }
 
 /// Writes a JSON object in a line for each pose to standard output. Its keys are time_s (host
-/// clock), hand ("left" or "right") and joints. joints has OpenXR's names in OpenXR's order, each
-/// with position_m [x, y, z] and orientation_xyzw, a unit quaternion whose w is not negative. The
+/// clock), hand ("left" or "right") and joints, with what gloves::joints_json() returns. The
 /// first pose of each glove has also the key angles, with what angle_sources_json() returns. A pose
 /// with estimated angles has the key deviations_deg: by the name of each of these angles, one
 /// standard deviation (hand::angle_deviations()). Where sensors are stuck, the key left_out has

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstring>
 
+#include <nendo/base/system_error.hpp>
+
 #include "publish/hand_messages.hpp"
 #include "publish/osc_packer.hpp"
 

@@ -13,6 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <nendo/base/shared_name.hpp>
+#include <nendo/base/system_error.hpp>
 #include <nendo/deform/triangles.hpp>
 #include <nendo/hand/hand_body.hpp>
 
@@ -49,50 +51,25 @@ UniqueFd look_at(const std::string& path) noexcept {
   return UniqueFd(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
 }
 
-bool is_same(int one, int other) noexcept {
-  struct stat first{};
-  struct stat second{};
-  return ::fstat(one, &first) == 0 && ::fstat(other, &second) == 0 &&
-         first.st_ino == second.st_ino && first.st_dev == second.st_dev;
-}
-
 Error taken(const std::string& path) {
   return {Errc::failed,
           path + ": another run publishes there; end it or " + std::string(another_name)};
 }
 
-// Of the right to give `path` to another file: two runs that both find a dead one's there must not
-// both remove it, for the second would remove the first's. A lock on that file would not do,
-// because readers may hold locks for reading on it; this one no reader can open. It goes with its
-// holder.
-class NameLock {
-public:
-  explicit NameLock(const std::string& path)
-      : path_("/dev/shm/." + path.substr(path.rfind('/') + 1) + ".lock") {}
-  ~NameLock() {
-    if (file_.is_open()) ::unlink(path_.c_str());
+// Takes the right to give `path` to another file: two runs that both find a dead one's there must
+// not both remove it, for the second would remove the first's. A lock on that file would not do,
+// because readers may hold locks for reading on it. Errors: as SharedMemory::announce().
+Result<void> take_name(NameLock& lock, const std::string& path) {
+  switch (lock.take()) {
+  case NameLock::Outcome::taken:
+    return {};
+  case NameLock::Outcome::held:
+    return taken(path);
+  case NameLock::Outcome::failed:
+    break;
   }
-  NameLock(const NameLock&) = delete;
-  NameLock& operator=(const NameLock&) = delete;
-
-  /// Does not wait. Errors: as SharedMemory::announce().
-  Result<void> take(const std::string& path) {
-    for (;;) {
-      UniqueFd file(::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
-      if (!file.is_open()) return system_error(path_, "cannot be made", another_name);
-      struct flock lock = whole_file(F_WRLCK);
-      if (::fcntl(file.get(), F_OFD_SETLK, &lock) != 0) return taken(path);
-      const UniqueFd there = look_at(path_);
-      if (!there.is_open() || !is_same(there.get(), file.get())) continue; // its holder has gone
-      file_ = std::move(file);
-      return {};
-    }
-  }
-
-private:
-  std::string path_;
-  UniqueFd file_;
-};
+  return system_error(lock.path(), "cannot be made", another_name);
+}
 
 // Removes a dead run's segment; anything else stays.
 Result<void> remove_stale(const std::string& path) {
@@ -150,8 +127,8 @@ Result<void> SharedMemory::lay_out(const std::optional<unsigned>& group) {
 }
 
 Result<void> SharedMemory::announce() {
-  NameLock lock(path_);
-  if (const auto locked = lock.take(path_); !locked) return locked.error();
+  NameLock lock("/dev/shm/." + path_.substr(path_.rfind('/') + 1) + ".lock");
+  if (const auto locked = take_name(lock, path_); !locked) return locked.error();
   if (const auto removed = remove_stale(path_); !removed) return removed.error();
   const std::string here = "/proc/self/fd/" + std::to_string(file_.get());
   named_ = ::linkat(AT_FDCWD, here.c_str(), AT_FDCWD, path_.c_str(), AT_SYMLINK_FOLLOW) == 0;
@@ -168,7 +145,7 @@ SharedMemory::~SharedMemory() {
   if (memory_ != nullptr) ::munmap(memory_, bytes_);
   if (!named_) return;
   const UniqueFd there = look_at(path_);
-  if (there.is_open() && is_same(there.get(), file_.get())) ::unlink(path_.c_str());
+  if (there.is_open() && is_same_file(there.get(), file_.get())) ::unlink(path_.c_str());
 }
 
 namespace {

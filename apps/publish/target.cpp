@@ -1,15 +1,11 @@
 #include "publish/target.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cstring>
-#include <system_error>
 
-#include <grp.h>
 #include <netdb.h>
 
 #include <nendo/base/number_in.hpp>
+#include <nendo/base/shared_name.hpp>
 #include <nendo/base/text.hpp>
 
 namespace nendo::publish {
@@ -19,37 +15,18 @@ Error wrong(std::string_view text, const std::string& what) {
   return {Errc::usage, std::string(text) + ": " + what};
 }
 
-bool is_name(std::string_view name) noexcept {
-  const auto allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-           c == '_' || c == '.';
-  };
-  return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), allowed);
-}
-
-std::optional<unsigned> group_of(const std::string& name) {
-  if (const auto number = number_in<unsigned>(name); number && *number != 0xFFFFFFFFU)
-    return number;
-  group entry{};
-  group* found = nullptr;
-  std::array<char, 16384> buffer{};
-  ::getgrnam_r(name.c_str(), &entry, buffer.data(), buffer.size(), &found);
-  return found != nullptr ? std::optional(found->gr_gid) : std::nullopt;
-}
-
 Result<Target> parse_segment(std::string_view text, std::string_view rest) {
   SegmentTarget target;
   const std::size_t mark = rest.find('?');
   const std::string_view name = rest.substr(0, mark);
   target.name = name.empty() ? "run" : std::string(name);
-  if (!is_name(target.name))
-    return wrong(text, "use letters, digits, '-', '_' and '.' for the name, at most 64");
+  if (!is_shared_name(target.name)) return wrong(text, std::string(shared_name_rule));
   if (mark == std::string_view::npos) return Target(target);
   constexpr std::string_view key = "group=";
   const std::string_view option = rest.substr(mark + 1);
   if (!option.starts_with(key))
     return wrong(text, "unknown option; ?group=GROUP lets that group read it");
-  target.group = group_of(std::string(option.substr(key.size())));
+  target.group = group_named(std::string(option.substr(key.size())));
   if (!target.group) return wrong(text, "no such group; getent group lists them");
   return Target(target);
 }
@@ -116,13 +93,6 @@ Result<Target> parse_target(std::string_view text) {
   if (text.starts_with("udp:"))
     return wrong(text, "is no longer sent; use osc:PORT, or shm:NAME on this machine");
   return wrong(text, "use shm:NAME, osc:[ADDRESS:]PORT or vmc:[ADDRESS:]PORT");
-}
-
-Error system_error(const std::string& place, const std::string& what, const std::string& remedy) {
-  const int number = errno;
-  const bool forbidden = number == EACCES || number == EPERM;
-  return {forbidden ? Errc::no_permission : Errc::failed,
-          place + ": " + what + ": " + std::generic_category().message(number) + "; " + remedy};
 }
 
 bool is_same_place(const Target& one, const Target& other) noexcept {

@@ -1,5 +1,5 @@
 #pragma once
-// The places that `--to` can name, and the errors of opening them.
+// The places that `--to` can name.
 
 #include <optional>
 #include <string>
@@ -41,9 +41,6 @@ using Target = std::variant<SegmentTarget, OscTarget>;
 /// them also with `?rate=HZ`; or the same with `vmc`. It looks up only the group. Error: usage, in
 /// a message without the name of the option.
 Result<Target> parse_target(std::string_view text);
-
-/// Returns the error of the last system call for that place: "PLACE: WHAT: why; REMEDY".
-Error system_error(const std::string& place, const std::string& what, const std::string& remedy);
 
 /// Returns whether both are the same segment, or the same address and port, whatever is sent there.
 bool is_same_place(const Target& one, const Target& other) noexcept;

@@ -33,6 +33,8 @@ constexpr std::array own_drivers{
                 alone<forte::open_forte>},
     GloveDriver{"usb", "usb:VID:PID[?serial=TEXT&hand=left|right]",
                 "a P5 (0d7f:0100) or 5DT Ultra (5d70:....) at USB", alone<open_usb_glove>},
+    GloveDriver{"serve", "serve[:NAME][?hand=left|right]",
+                "a glove that nendo serve shares on this machine", alone<served::open_served_glove>},
     GloveDriver{"auto", "auto[:left|right]", "the glove that its name or a udev rule identifies",
                 alone<open_auto>},
     GloveDriver{"sim", "sim[:MOTION][?seed=N&rate=HZ&hand=left|right&sensors=18|22]",

@@ -130,6 +130,21 @@ Result<std::unique_ptr<Tracker>> open_osc(const DeviceSpec& spec,
 
 } // namespace osc
 
+namespace served {
+
+/// Opens `serve[:NAME][?hand=left|right]`, a glove that `nendo serve` shares with other programs of
+/// this machine: the one that moves the hand of the option, or else that of `side`. Without both,
+/// it must have gloves of one hand only. Samples have the server's times. Feedback is ignored.
+Result<std::unique_ptr<Glove>> open_served_glove(const DeviceSpec& spec, std::optional<Side> side);
+
+/// Opens `serve[:NAME][?hand=left|right]`, the station of a tracker that moves a hand there.
+/// Without the option, the server must have a tracker for one hand only. `stations` has one number,
+/// which the poses get.
+Result<std::unique_ptr<Tracker>> open_served_tracker(const DeviceSpec& spec,
+                                                    std::span<const std::uint16_t> stations);
+
+} // namespace served
+
 namespace liberty {
 
 /// Opens `liberty:PATH[?station=N&baud=N&hemisphere=x,y,z&filter=on|off]`, a Polhemus LIBERTY,

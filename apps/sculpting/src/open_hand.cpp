@@ -121,7 +121,7 @@ Result<hand::TrackingOptions> find_tracking(const driver::TrackerStation& statio
   const driver::TrackerInfo& info = station.tracker->info();
   hand::TrackingOptions tracking = usual_tracking(info);
   if (info.kind != driver::SourceKind::device) return tracking;
-  const auto mount = hand::find_mount(station.source, station.station, side);
+  const auto mount = hand::find_mount(station.mount_source(), station.mount_station(), side);
   if (!mount) return mount.error();
   const std::string name =
       printable(station.source) + ", " + std::string(name_of(side)) + " hand: ";

@@ -68,11 +68,11 @@ protected:
   virtual void after_read(Transport& transport, const std::stop_token& token) noexcept {
     (void)transport, (void)token;
   }
-  /// Sets the times and the number of a sample that push() brought.
+  /// Sets the number of a sample that push() brought, and the times that the protocol did not set.
   template <class Sample>
   void stamp(Sample& sample) noexcept {
-    sample.arrival = arrival_;
-    if (!sample.has_device_time) sample.measured = arrival_;
+    if (sample.arrival == HostTime{}) sample.arrival = arrival_;
+    if (!sample.has_device_time && sample.measured == HostTime{}) sample.measured = sample.arrival;
     sample.sequence = sequence_++;
   }
   /// Counts a good sample, which the ring took or refused.

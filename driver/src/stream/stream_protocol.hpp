@@ -36,8 +36,8 @@ enum class IdentifyReason : std::uint8_t {
   damaged,  ///< its records became unreadable: another device may have been plugged in
 };
 
-/// Takes the samples that a protocol decodes. The sink sets `sequence` and `arrival`, and also
-/// `measured` if the device has no clock.
+/// Takes the samples that a protocol decodes. The sink sets `sequence`, and also `arrival` and
+/// `measured` where the protocol does not know them, and has left them zero.
 template <class Sample>
 class SampleSink {
 public:

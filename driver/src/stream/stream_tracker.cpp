@@ -30,9 +30,7 @@ private:
     protocol_->push(chunk, arrival, *this);
   }
   void deliver(PoseSample& sample) noexcept override {
-    const HostTime measured = sample.measured;
     stamp(sample);
-    if (measured != HostTime{}) sample.measured = measured;
     bool taken = true;
     for (const StationRing& station : rings_)
       if (station.station == sample.station) taken = station.ring->try_push(sample) && taken;

@@ -1,12 +1,10 @@
 #include "transport/tcp_transport.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <future>
-#include <span>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -20,6 +18,7 @@
 #include <nendo/base/units.hpp>
 
 #include "transport/fd_io.hpp"
+#include "transport/socket_transport.hpp"
 
 namespace nendo::driver {
 namespace {
@@ -30,42 +29,6 @@ constexpr auto look_up_time = 1s;
 constexpr auto first_connect_time = 1s;
 constexpr auto connect_time = 500ms; ///< a stop of the reader waits for it
 constexpr int max_unconfirmed_ms = 2000;
-
-class TcpTransport final : public Transport {
-public:
-  explicit TcpTransport(UniqueFd fd) noexcept : fd_(std::move(fd)) {}
-
-  ReadResult read_some(std::span<std::byte> buffer,
-                       std::chrono::milliseconds timeout) noexcept override {
-    if (is_hung_up_) return {IoStatus::gone, 0};
-    const IoStatus ready = wait_fd(fd_.get(), POLLIN, HostClock::now() + timeout);
-    if (ready != IoStatus::done) return {ready, 0};
-    const ssize_t count = ::recv(fd_.get(), buffer.data(), buffer.size(), 0);
-    if (count > 0) return {IoStatus::done, static_cast<std::size_t>(count)};
-    const bool nothing_yet = count < 0 && (errno == EAGAIN || errno == EINTR);
-    return {nothing_yet ? IoStatus::timeout : IoStatus::gone, 0};
-  }
-
-  IoStatus write_all(std::span<const std::byte> bytes,
-                     std::chrono::milliseconds timeout) noexcept override {
-    if (is_hung_up_) return IoStatus::gone;
-    return write_all_fd(
-        fd_.get(), bytes, timeout, [this](std::span<const std::byte> rest) -> ssize_t {
-          const ssize_t count = ::send(fd_.get(), rest.data(), rest.size(), MSG_NOSIGNAL);
-          return count < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : count;
-        });
-  }
-
-  void discard_input() noexcept override {}
-  void hang_up() noexcept override {
-    is_hung_up_ = true;
-    ::shutdown(fd_.get(), SHUT_RDWR); // the server notices it before the reader does
-  }
-
-private:
-  const UniqueFd fd_;
-  bool is_hung_up_ = false;
-};
 
 /// What getaddrinfo() answers.
 struct Found {
@@ -184,7 +147,7 @@ Result<std::unique_ptr<Transport>> TcpConnector::connect() {
     error = connect_socket(addresses_[at], deadline, fd);
     if (error != 0) continue;
     ++connections_;
-    return std::unique_ptr<Transport>(std::make_unique<TcpTransport>(std::move(fd)));
+    return transport_of_socket(std::move(fd));
   }
   return not_connected(name(), error);
 }

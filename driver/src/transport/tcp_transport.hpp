@@ -21,11 +21,8 @@ struct SocketAddress {
 };
 
 /// Connects to one server, again after each loss. One thread at a time uses it, as it uses the
-/// transports.
-///
-/// A connection discards no input that has arrived (Transport::discard_input does nothing), because
-/// the rest of the conversation has no meaning without its beginning. What is sent leaves at once
-/// (TCP_NODELAY). A server that confirms nothing for two seconds is gone.
+/// transports, see transport_of_socket(). What is sent leaves at once (TCP_NODELAY). A server that
+/// confirms nothing for two seconds is gone.
 class TcpConnector {
 public:
   /// `host` is a name, or an address without brackets.

@@ -1,7 +1,7 @@
 #pragma once
 // Opens a glove from a typed specification, with one grammar everywhere:
 //   serial:/dev/ttyUSB0   serial:/dev/ttyUSB0?baud=38400   auto   auto:left
-//   sim   sim:pinch?seed=7&rate=100&hand=left&sensors=18
+//   serve   serve:NAME?hand=left   sim   sim:pinch?seed=7&rate=100&hand=left&sensors=18
 // A program can add kinds of gloves, and motions of simulated ones.
 
 #include <array>

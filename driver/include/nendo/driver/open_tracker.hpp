@@ -1,6 +1,7 @@
 #pragma once
 // Opens trackers from typed specifications, each of which names one station of a tracker:
 //   fastrak:/dev/ttyUSB2?station=1   vrpn:Tracker0@host?sensor=0   osc:9000/left   sim:orbit
+//   serve:?hand=left
 
 #include <cstdint>
 #include <memory>
@@ -36,6 +37,16 @@ struct TrackerStation {
   /// The specification that names this station, e.g. "fastrak:/dev/ttyUSB2?station=1", also if the
   /// user left the station out. TrackerInfo::source is that of the first station, as typed.
   std::string source;
+
+  /// The names by which the mount of the station is stored. A tracker that another program shares
+  /// has the mount that it has there.
+  const std::string& mount_source() const noexcept {
+    const TrackerInfo& info = tracker->info();
+    return info.shared_source.empty() ? source : info.shared_source;
+  }
+  std::uint16_t mount_station() const noexcept {
+    return tracker->info().shared_source.empty() ? station : tracker->info().shared_station;
+  }
 };
 
 /// Opens the trackers of these specifications, and returns their stations in the same order. A

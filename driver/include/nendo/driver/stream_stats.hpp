@@ -2,8 +2,10 @@
 // What gloves and trackers have in common: the properties that a device reports, and the counts of
 // its stream.
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace nendo::driver {
 
@@ -21,6 +23,10 @@ enum class SourceKind : std::uint8_t {
   recorded,  ///< read from a recording
 };
 
+/// The names of the kinds, in their order.
+inline constexpr std::array<std::string_view, 3> source_kind_names{"device", "simulated",
+                                                                   "recorded"};
+
 /// Monotonic counts of a stream of bytes. bytes = record_bytes + discarded_bytes + a remainder
 /// shorter than the longest record.
 struct StreamCounters {
@@ -30,7 +36,7 @@ struct StreamCounters {
   std::uint64_t records = 0;         ///< delivered records: complete and valid
   std::uint64_t bad_records = 0;     ///< framed, with wrong length, header, checksum or content
   std::uint64_t implausible = 0;     ///< bad records with contradictory time stamp or status
-  std::uint64_t missed = 0;    ///< sent, by the glove's clock, not delivered; includes bad ones
+  std::uint64_t missed = 0;    ///< sent, by its clock or count, not delivered; includes bad ones
   std::uint64_t too_fast = 0;  ///< delivered, but reported as off the sampling period (`es`)
   std::uint64_t unplugged = 0; ///< records that report no glove (`eg`); not delivered
   std::uint64_t clamped = 0;   ///< out-of-range values in delivered records, clamped to the range

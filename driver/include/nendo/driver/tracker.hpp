@@ -33,6 +33,10 @@ struct TrackerInfo {
   bool is_filtered = false;      ///< the device or its server filters the poses already
   std::vector<DeviceFact> facts; ///< all other reported properties
   SourceKind kind = SourceKind::device;
+  /// The specification and the station by which another program has opened the tracker, if that
+  /// program shares it (`serve:`); else empty.
+  std::string shared_source;
+  std::uint16_t shared_station = 0;
 };
 
 /// The ring of a station's poses.
