@@ -4,10 +4,13 @@
 #include <string>
 #include <vector>
 
+#include <spdlog/fmt/fmt.h>
+
 #include <nendo/deform/mesh.hpp>
 
 #include "cli/cli.hpp"
 #include "nendo/commands.hpp"
+#include "serve/server.hpp"
 #include "service/service_notice.hpp"
 #include "session/open_hands.hpp"
 #include "session/run_publishing.hpp"
@@ -22,9 +25,44 @@ struct Options {
   session::RunOptions run;
   session::LoopArguments loop;
   session::SettingArguments settings;
+  std::string name{driver::default_serve_name}; ///< the text for serve::parse_target()
   std::vector<std::string> targets;
   std::string web; ///< [ADDR:]PORT; empty: none
 };
+
+/// Passes the frames of a run to the server.
+class ServerSink final : public session::Sink {
+public:
+  explicit ServerSink(serve::Server& server) : frames_(server.frames()) {}
+  Result<void> begin(const session::LoopStart&) override { return {}; }
+  Result<void> prepare(const flow::ModelVersion&) override { return {}; }
+  void show(const flow::Frame& frame) noexcept override { frames_.show(frame); }
+
+private:
+  flow::FrameSink& frames_;
+};
+
+serve::Devices devices_of(const std::vector<gloves::OpenHand>& hands) {
+  serve::Devices devices;
+  for (std::size_t at = 0; at < hands.size(); ++at) {
+    const gloves::OpenHand& hand = hands[at];
+    devices.gloves.push_back({static_cast<std::uint8_t>(at), hand.side, hand.glove->info()});
+    if (!hand.wrist) continue;
+    const driver::TrackerStation& station = hand.wrist->station;
+    devices.trackers.push_back({hand.side, station.station, station.tracker->info()});
+  }
+  return devices;
+}
+
+/// Reports what clients missed, if they did.
+void report_clients(const serve::ServerCounters& counters) {
+  if (counters.dropped > 0)
+    cli::note(fmt::format("clients of the socket missed {} lines, because they read too slowly",
+                          counters.dropped));
+  if (counters.refused > 0)
+    cli::note(
+        fmt::format("{} clients were refused, because there were too many", counters.refused));
+}
 
 Result<void> check(Options& options) {
   if (const auto fine = session::check_count(options.run.gloves); !fine) return fine;
@@ -44,6 +82,10 @@ int serve(Options& options) {
   if (const auto fine = check(options); !fine) return cli::report(fine.error());
   auto published = session::publish_to(options.targets);
   if (!published) return cli::report(published.error());
+  const auto target = serve::parse_target(options.name);
+  if (!target) return cli::report({Errc::usage, "--name " + target.error().message});
+  auto socket = serve::Socket::claim(*target);
+  if (!socket) return cli::report(socket.error());
   cli::install_stop_signals();
   const flow::RealtimeProcess process(run.realtime);
   std::unique_ptr<session::BrowserView> browser;
@@ -56,8 +98,14 @@ int serve(Options& options) {
   EventCount event_count;
   auto opened = session::open_hands(run, no_model, event_count);
   if (!opened) return cli::report(opened.error());
+  auto server = serve::Server::open(*std::move(socket), devices_of(opened->hands));
+  if (!server) return cli::report(server.error());
+  run.loop.input_log = &(*server)->input();
+  ServerSink served(**server);
+  cli::note("serving at " + (*server)->path());
   service::ServiceNotice service;
   session::RunParticipants participants;
+  participants.sinks.push_back(&served);
   participants.progress = [&service, shown = session::progress_for(run, opened->hands)](
                               const flow::Frame& frame, double elapsed_s) {
     service.alive();
@@ -76,6 +124,7 @@ int serve(Options& options) {
   for (const auto& sink : *published)
     outcome->published.push_back(sink->end());
   session::print_summary(run, opened->hands, *outcome);
+  report_clients((*server)->counters());
   return 0;
 }
 
@@ -95,6 +144,9 @@ void nendo::app::add_serve(cli::Command& program) {
   gloves::add_wrist_options(command, run.wrists);
   gloves::add_calibration_options(command, run.calibration, true);
   gloves::add_hand_length(command, run.length);
+  command.add_option("--name", options.name,
+                     "The name by which GLOVE serve:NAME and other programs find it; with "
+                     "?group=GROUP that group may use it");
   session::add_publish_option(command, options.targets);
   command.add_option("--web", options.web,
                      "[ADDR:]PORT at which a browser shows the hands; without ADDR, only a browser "

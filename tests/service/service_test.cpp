@@ -104,20 +104,25 @@ TEST_SUITE("service") {
     CHECK(supervisor.heard().front().starts_with("READY=1"));
   }
 
-  TEST_CASE("systemd understands the unit, and finds little that it exposes") {
+  TEST_CASE("systemd understands the units, and finds little that they expose") {
     const TemporaryFolder folder;
-    const auto unit = (folder.path() / "nendo@test.service").string();
-    std::string text = contents(NENDO_SERVICE);
-    REQUIRE(text.find("/usr/bin/nendo ") != std::string::npos);
-    text.replace(text.find("/usr/bin/nendo "), 14, NENDO_PROGRAM); // it must be there
-    write_file(unit, text);
-    const auto verified = shell("systemd-analyze verify --man=no '" + unit + "'");
-    CHECK_MESSAGE(verified.exit_code == 0, verified.out);
-    CHECK_MESSAGE(verified.out.find("nendo@test.service:") == std::string::npos, verified.out);
-    // 100 is a service without any of it; below 30 is what systemd calls well protected.
-    const auto exposure =
-        shell("systemd-analyze security --no-pager --offline=yes --threshold=20 '" + unit + "'");
-    CHECK_MESSAGE(exposure.exit_code == 0, exposure.out);
+    std::string unit;
+    for (const std::string name : {"nendo@.service", "nendo-serve.service"}) {
+      CAPTURE(name);
+      const std::string instance = name == "nendo@.service" ? "nendo@test.service" : name;
+      unit = (folder.path() / instance).string();
+      std::string text = contents(NENDO_SERVICES + name);
+      REQUIRE(text.find("/usr/bin/nendo ") != std::string::npos);
+      text.replace(text.find("/usr/bin/nendo "), 14, NENDO_PROGRAM); // it must be there
+      write_file(unit, text);
+      const auto verified = shell("systemd-analyze verify --man=no '" + unit + "'");
+      CHECK_MESSAGE(verified.exit_code == 0, verified.out);
+      CHECK_MESSAGE(verified.out.find(instance + ":") == std::string::npos, verified.out);
+      // 100 is a service without any of it; below 30 is what systemd calls well protected.
+      const auto exposure =
+          shell("systemd-analyze security --no-pager --offline=yes --threshold=20 '" + unit + "'");
+      CHECK_MESSAGE(exposure.exit_code == 0, exposure.out);
+    }
     write_file(unit, "[Service]\nExecStart=/bin/true\nNoSuchKey=1\n"); // the control
     CHECK(shell("systemd-analyze verify --man=no '" + unit + "'").out.find("NoSuchKey") !=
           std::string::npos);
