@@ -15,6 +15,7 @@
 
 #include "support/json_lines.hpp"
 #include "support/program.hpp"
+#include "support/runtime_folder.hpp"
 
 namespace serve_command_test {
 
@@ -60,6 +61,7 @@ private:
 
 TEST_SUITE("serve") {
   TEST_CASE("two gloves become hands in a segment without vertices, tick by tick with samples") {
+    const RuntimeFolder runtime;
     const std::string name = "serve-" + std::to_string(::getpid());
     Program serving(
         {"serve", "sim:grasp?hand=left", "sim:pinch?hand=right", "--to", "shm:" + name, "--json"});
@@ -87,6 +89,7 @@ TEST_SUITE("serve") {
   }
 
   TEST_CASE("a tracker moves a served hand") {
+    const RuntimeFolder runtime;
     const std::string name = "served-wrist-" + std::to_string(::getpid());
     Program serving(
         {"serve", "sim:rest?hand=right", "--right-wrist", "sim:orbit", "--to", "shm:" + name});
@@ -108,7 +111,39 @@ TEST_SUITE("serve") {
     CHECK(path_m > 0.05);
   }
 
+  TEST_CASE("a glove that is served is a glove of several programs at once") {
+    const RuntimeFolder runtime;
+    Program serving({"serve", "sim:grasp?hand=left", "sim:pinch?hand=right", "--right-wrist",
+                     "sim:orbit", "--name", "lab"});
+    REQUIRE(appears(runtime.path() / "nendo" / "lab.sock"));
+    Program monitored({"monitor", "serve:lab?hand=left", "--json", "--raw", "--count", "50"});
+    const TemporaryFolder folder;
+    const Finished run = nendo::test::nendo({"run", "--left", "serve:lab?hand=left", "--right",
+                                             "serve:lab?hand=right", "--right-wrist",
+                                             "serve:lab?hand=right", "--duration", "1", "--json",
+                                             "--out", (folder.path() / "shape.obj").string()});
+    REQUIRE_MESSAGE(run.exit_code == 0, run.err);
+    const json summary = last_object(run);
+    CHECK(summary["left"]["samples"].get<int>() > 45);
+    CHECK(summary["right"]["samples"].get<int>() > 45);
+    CHECK(summary["right"]["wrist"]["poses"].get<int>() > 45);
+    const Finished seen = monitored.wait();
+    CHECK(seen.exit_code == 0);
+    CHECK(lines_of(seen.out).size() >= 50);
+    const Finished which = nendo::test::nendo({"info", "serve:lab"});
+    CHECK(which.exit_code == 2);
+    CHECK_MESSAGE(is_one_line_about(which.err, "?hand=left"), which.err);
+    const Finished second = nendo::test::nendo({"serve", "sim", "--name", "lab"});
+    CHECK(second.exit_code == 1);
+    serving.signal(SIGINT);
+    CHECK(serving.wait().exit_code == 0);
+    const Finished none = nendo::test::nendo({"info", "serve:lab"});
+    CHECK(none.exit_code == 3);
+    CHECK_MESSAGE(is_one_line_about(none.err, "serve:lab"), none.err);
+  }
+
   TEST_CASE("what serve cannot do is wrong usage, in one line") {
+    const RuntimeFolder runtime;
     for (const auto& [arguments, about] :
          {std::pair{std::vector<std::string>{"serve", "sim", "sim", "sim"}, "GLOVE"},
           {{"serve", "sim", "--to", "tcp:9000"}, "--to tcp:9000"},
