@@ -7,6 +7,7 @@
 namespace nendo::publish {
 namespace {
 
+constexpr lo_timetag immediately{0U, 1U};
 constexpr std::size_t element_head_bytes = 4; ///< the length of a message in its bundle
 
 void put_numbers(lo_message message, std::span<const float> numbers) {
@@ -38,7 +39,7 @@ void OscPacker::add(const char* address, const char* text, std::span<const float
 void OscPacker::add_message(const char* address, void* message) {
   const std::size_t more = element_head_bytes + lo_message_length(message, address);
   if (bundle_ != nullptr && lo_bundle_length(bundle_) + more > max_datagram_bytes) flush();
-  if (bundle_ == nullptr) bundle_ = lo_bundle_new(LO_TT_IMMEDIATE);
+  if (bundle_ == nullptr) bundle_ = lo_bundle_new(immediately);
   lo_bundle_add_message(bundle_, address, message); // which owns it from here on
 }
 
