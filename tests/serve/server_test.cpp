@@ -287,7 +287,7 @@ TEST_SUITE("serve_server") {
     const ServedHands served;
     LineClient client = introduced(served);
     client.ask(R"({"class":"WATCH","hands":true,"rate_hz":1000})");
-    std::uint64_t tick = 0;
+    std::atomic<std::uint64_t> tick{0};
     for (; served.server->counters().dropped < 20; std::this_thread::sleep_for(500us))
       show(*served.server, ++tick);
     std::uint64_t got = 0;
