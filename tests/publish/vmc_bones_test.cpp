@@ -1,6 +1,9 @@
 // Bones of an avatar, in Unity's axes: x right, y up, z forward, left-handed.
 
+#include <algorithm>
+#include <array>
 #include <map>
+#include <random>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -35,6 +38,13 @@ Quaternion times(const Quaternion& a, const Quaternion& b) {
           a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
           a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
           a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]};
+}
+
+template <std::size_t size>
+std::array<double, size> doubles(const std::array<float, size>& floats) {
+  std::array<double, size> numbers{};
+  std::copy(floats.begin(), floats.end(), numbers.begin());
+  return numbers;
 }
 
 struct Placed {
@@ -72,12 +82,10 @@ std::map<std::string, Placed> placed(Side side, const hand::JointAngles& angles,
         parent = bones.at(name.substr(0, name.size() - std::string(end).size()) + above);
     if (name.ends_with("Proximal")) parent = bones.at("Hand");
     Placed here;
-    const Vector offset =
-        turned(parent.rotation, {bone.position_m[0], bone.position_m[1], bone.position_m[2]});
+    const auto offset = turned(parent.rotation, doubles(bone.position_m));
     for (std::size_t axis = 0; axis < 3; ++axis)
       here.position[axis] = parent.position[axis] + offset[axis];
-    here.rotation = times(parent.rotation, {bone.rotation_xyzw[0], bone.rotation_xyzw[1],
-                                            bone.rotation_xyzw[2], bone.rotation_xyzw[3]});
+    here.rotation = times(parent.rotation, doubles(bone.rotation_xyzw));
     bones[name] = here;
   }
   return bones;
