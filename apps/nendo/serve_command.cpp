@@ -75,7 +75,7 @@ Result<void> check(Options& options) {
   return options.loop.parse(options.run.loop, options.run.realtime);
 }
 
-int serve(Options& options) {
+int serve_hands(Options& options) {
   session::RunOptions& run = options.run;
   run.hands_only = true;
   run.loop.held = false;
@@ -135,7 +135,7 @@ void nendo::app::add_serve(cli::Command& program) {
   using namespace serve_command;
   cli::Command command = program.add_command(
       "serve", "Shares gloves, trackers and hands with other programs, without a model");
-  Options& options = command.on_chosen<Options>(serve);
+  Options& options = command.on_chosen<Options>(serve_hands);
   session::RunOptions& run = options.run;
   options.loop.policy = "sample";
   command.add_option("GLOVE", run.gloves,
