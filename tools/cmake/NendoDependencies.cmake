@@ -27,6 +27,13 @@ if(NENDO_APPS)
   endif()
   option(NENDO_WINDOW "Build the live window (GLFW, OpenGL, Dear ImGui)" ${has_window})
 endif()
+if(NENDO_PYTHON)
+  if(EXISTS /usr/bin/python3 AND NOT DEFINED Python_EXECUTABLE AND NOT SKBUILD)
+    set(Python_EXECUTABLE /usr/bin/python3) # for which Debian's NumPy is
+  endif()
+  find_package(Python 3.9 REQUIRED COMPONENTS Interpreter Development.Module) # before pybind11, which then uses it
+  find_package(pybind11 2.10 REQUIRED CONFIG)
+endif()
 if(NENDO_TESTS)
   find_package(doctest REQUIRED)
   find_path(NENDO_OPENXR_INCLUDE openxr/openxr.h REQUIRED) # the header alone: nothing is linked, nothing runs

@@ -21,7 +21,7 @@ function(nendo_harden target)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     target_compile_options(${target} PRIVATE $<${release}:-fcf-protection>)
   endif()
-  if(type MATCHES "EXECUTABLE|SHARED")
+  if(type MATCHES "EXECUTABLE|SHARED|MODULE")
     target_link_options(${target} PRIVATE $<${release}:LINKER:-z,relro,-z,now,-z,noexecstack>)
   endif()
   if(NOT type STREQUAL "EXECUTABLE" AND BUILD_SHARED_LIBS) # a library's own calls stay in it, and can be inlined
