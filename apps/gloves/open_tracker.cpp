@@ -38,7 +38,8 @@ bool is_tracker(std::string_view spec, bool is_said) {
 }
 
 void add_tracker_flag(cli::Command& command, bool& is_said) {
-  command.add_flag("--tracker", is_said, "It is a TRACKER, where it can be both: sim, serve, replay:FILE");
+  command.add_flag("--tracker", is_said,
+                   "It is a TRACKER, where it can be both: sim, serve, replay:FILE");
 }
 
 std::vector<std::string> tracker_specs_of_port(const std::string& port) {

@@ -141,7 +141,7 @@ Result<std::unique_ptr<Glove>> open_served_glove(const DeviceSpec& spec, std::op
 /// Without the option, the server must have a tracker for one hand only. `stations` has one number,
 /// which the poses get.
 Result<std::unique_ptr<Tracker>> open_served_tracker(const DeviceSpec& spec,
-                                                    std::span<const std::uint16_t> stations);
+                                                     std::span<const std::uint16_t> stations);
 
 } // namespace served
 

@@ -160,8 +160,8 @@ Result<void> open_wrists(std::span<OpenHand> hands, const WristOptions& options,
     auto tracking = find_tracking((*stations)[at], moved[at]->side, note);
     if (!tracking) return tracking.error();
     tracking->movement_scale = options.movement_scale;
-    moved[at]->wrist =
-        OpenWrist{std::make_unique<PoseRing>(1024, options.event_count), (*stations)[at], *std::move(tracking)};
+    moved[at]->wrist = OpenWrist{std::make_unique<PoseRing>(1024, options.event_count),
+                                 (*stations)[at], *std::move(tracking)};
   }
   return {};
 }

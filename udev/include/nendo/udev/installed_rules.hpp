@@ -46,7 +46,8 @@ struct RuleChange {
 NENDO_API Result<void> apply(const RuleChange& change);
 
 /// Makes the running udev read its rules again and apply them to USB devices, ports and
-/// SpaceMice that are plugged in. Returns one line that says what came of it. Blocks while udevadm runs.
+/// SpaceMice that are plugged in. Returns one line that says what came of it. Blocks while udevadm
+/// runs.
 NENDO_API std::string refresh_udev();
 
 } // namespace nendo::udev
