@@ -6,6 +6,16 @@
 #include <nendo/base/number_in.hpp>
 
 namespace nendo::markers {
+namespace {
+
+/// Opens a file by what reads files. OpenCV by itself would also look for photo cameras at USB.
+bool open_file(const std::string& name, cv::VideoCapture& capture) {
+  for (const auto reader : {cv::CAP_FFMPEG, cv::CAP_GSTREAMER, cv::CAP_IMAGES})
+    if (capture.open(name, reader)) return true;
+  return false;
+}
+
+} // namespace
 
 Result<Video> Video::open(const std::string& source, std::uint32_t width_px,
                           std::uint32_t height_px) {
@@ -14,7 +24,8 @@ Result<Video> Video::open(const std::string& source, std::uint32_t width_px,
   const auto number = number_in<int>(source);
   video.is_file_ = !number;
   try {
-    if (video.is_file_ ? !video.capture_.open(source) : !video.capture_.open(*number, cv::CAP_V4L2))
+    if (!(video.is_file_ ? open_file(source, video.capture_)
+                         : video.capture_.open(*number, cv::CAP_V4L2)))
       return Error{Errc::no_device, video.is_file_
                                         ? "--camera " + source +
                                               ": no video that can be read; give a file, or a "
