@@ -3,28 +3,17 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
-#include <string_view>
 
+#include "laws.hpp"
 #include "markers/camera_model.hpp"
-
-namespace {
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
-
-} // namespace
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace nendo::markers;
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const auto camera = camera_from_toml(text, "fuzz");
+  const auto camera = camera_from_toml(text_of(data, size), "fuzz");
   if (!camera) {
-    const auto& message = camera.error().message;
-    require(message.starts_with("fuzz:") && message.find('\n') == std::string::npos);
+    require_one_line(camera.error());
     return 0;
   }
   require(camera->width_px >= 16 && camera->height_px >= 16);

@@ -1,27 +1,19 @@
 // Whatever the text is, parse_control_vectors gives an error or vectors that a solver takes.
 
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
 #include <nendo/deform/control_vectors.hpp>
 
-namespace {
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
-
-} // namespace
+#include "laws.hpp"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::string_view text = text_of(data, size);
   const auto vectors = nendo::deform::parse_control_vectors(text, "fuzz");
   if (!vectors) {
-    const auto& message = vectors.error().message;
-    require(!message.empty() && message.find('\n') == std::string::npos);
+    require_one_line(vectors.error(), "");
     return 0;
   }
   require(vectors->starts.cols() > 0 && vectors->starts.cols() == vectors->displacements.cols());

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,12 +12,9 @@
 #include <nendo/deform/repair.hpp>
 
 #include "files/mtl_file.hpp"
+#include "laws.hpp"
 
 namespace {
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
 
 bool are_below(std::span<const std::uint32_t> indices, Eigen::Index count) {
   return std::all_of(indices.begin(), indices.end(),
@@ -66,8 +62,7 @@ void read_as_model(std::span<const std::byte> bytes, std::string_view name) {
   const nendo::deform::ReadOptions options{nendo::deform::UpAxis::z, true};
   const auto model = nendo::deform::parse_model(bytes, name, options);
   if (!model) {
-    const auto& message = model.error().message;
-    require(!message.empty() && message.find('\n') == std::string::npos);
+    require_one_line(model.error(), "");
     return;
   }
   for (const std::string& note : model->notes)

@@ -2,7 +2,6 @@
 // can be played: its points are finite wherever its functions are between their limits.
 
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -10,15 +9,12 @@
 
 #include <nendo/puppet/rig.hpp>
 
+#include "laws.hpp"
 #include "support/test_meshes.hpp"
 
 namespace {
 
 using nendo::puppet::Puppet;
-
-void require(bool law) {
-  if (!law) std::abort();
-}
 
 void play(Puppet puppet) {
   static const nendo::deform::Mesh model = nendo::test::sphere(6, 8, 1.0);
@@ -37,11 +33,10 @@ void play(Puppet puppet) {
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::string_view text = text_of(data, size);
   auto puppet = nendo::puppet::parse_puppet(text, "fuzz");
   if (!puppet) {
-    const auto& message = puppet.error().message;
-    require(message.starts_with("fuzz:") && message.find('\n') == std::string::npos);
+    require_one_line(puppet.error());
     return 0;
   }
   require(puppet->points.size() <= Puppet::max_points);

@@ -3,23 +3,19 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <span>
 #include <vector>
 
 #include <nendo/recording/loop_replay.hpp>
 #include <nendo/recording/take_tools.hpp>
 
+#include "laws.hpp"
 #include "support/test_meshes.hpp"
 
 using namespace nendo;
 using namespace nendo::recording;
 
 namespace {
-
-void require(bool law) {
-  if (!law) std::abort();
-}
 
 /// A file of the payloads that the input is cut into: a byte for the type, two for the length.
 std::vector<std::byte> framed(std::span<const std::byte> input) {
@@ -67,8 +63,7 @@ void sum_up(std::span<const std::byte> file, const std::vector<Entry>& entries) 
 void read(std::span<const std::byte> file) {
   auto reader = TakeReader::of(file, "fuzz");
   if (!reader) {
-    const auto& message = reader.error().message;
-    require(!message.empty() && message.find('\n') == std::string::npos);
+    require_one_line(reader.error(), "");
     return;
   }
   Setup setup = reader->setup();

@@ -3,25 +3,18 @@
 #include "serve/request.hpp"
 
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
+
+#include "laws.hpp"
 
 using namespace nendo::serve;
 
-namespace {
-
-void require(bool law) {
-  if (!law) std::abort();
-}
-
-} // namespace
-
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view request(reinterpret_cast<const char*>(data), size);
+  const std::string_view request = text_of(data, size);
   const auto watch = changed({}, request);
   if (!watch) {
-    require(watch.error().message.find('\n') == std::string::npos);
+    require_one_line(watch.error(), "");
     return 0;
   }
   require(watch->rate_hz >= min_rate_hz && watch->rate_hz <= max_rate_hz);

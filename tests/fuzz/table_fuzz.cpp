@@ -2,21 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
 #include <nendo/base/table.hpp>
 
+#include "laws.hpp"
+
 namespace {
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
-
-void require_one_line(const nendo::Error& error) {
-  require(error.message.starts_with("fuzz:") && error.message.find('\n') == std::string::npos);
-}
 
 void read(nendo::TableReader& table) {
   std::size_t line = 0;
@@ -41,7 +34,7 @@ void read(nendo::TableReader& table) {
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::string_view text = text_of(data, size);
   nendo::TableReader named(text, "fuzz");
   if (const auto fine = named.read_head("a,b"); fine) {
     for (const std::string& name : named.names())

@@ -3,19 +3,15 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 #include <variant>
 
+#include "laws.hpp"
 #include "support/test_meshes.hpp"
 #include "timeline/player.hpp"
 #include "timeline/timeline.hpp"
 
 namespace {
-
-void require(bool law) {
-  if (!law) std::abort();
-}
 
 void play(nendo::timeline::Timeline timeline) {
   constexpr int max_frames = 12;
@@ -39,11 +35,10 @@ void play(nendo::timeline::Timeline timeline) {
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace nendo::timeline;
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::string_view text = text_of(data, size);
   auto timeline = parse_timeline(text, "fuzz");
   if (!timeline) {
-    const auto& message = timeline.error().message;
-    require(message.starts_with("fuzz:") && message.find('\n') == std::string::npos);
+    require_one_line(timeline.error());
     return 0;
   }
   const auto written = timeline_text(*timeline);

@@ -3,7 +3,6 @@
 // the sanitizers, which Debian's library is not.
 
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -13,17 +12,11 @@
 #include <nendo/base/plain_toml.hpp>
 #include <nendo/base/text.hpp>
 
-namespace {
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
-
-} // namespace
+#include "laws.hpp"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::string_view text = text_of(data, size);
   if (const auto fault = nendo::find_toml_fault(text)) {
     require(fault->line >= 1 && !fault->what.empty());
     require(nendo::printable(fault->what) == fault->what);

@@ -2,27 +2,19 @@
 // to the same bits.
 
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
 #include <nendo/hand/tracker_mount.hpp>
 
-namespace {
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
-
-} // namespace
+#include "laws.hpp"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::string_view text = text_of(data, size);
   const auto mount = nendo::hand::parse_mount(text, "fuzz");
   if (!mount) {
-    const auto& message = mount.error().message;
-    require(message.starts_with("fuzz:") && message.find('\n') == std::string::npos);
+    require_one_line(mount.error());
     return 0;
   }
   require(nendo::hand::wrist_mount(*mount).T_station_wrist.matrix().allFinite());

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 
+#include "laws.hpp"
 #include "web/client_commands.hpp"
 #include "web/http_request.hpp"
 #include "web/model_message.hpp"
@@ -14,10 +14,6 @@
 using namespace nendo::web;
 
 namespace {
-
-void require(bool law) {
-  if (!law) std::abort();
-}
 
 bool is_within(std::string_view part, std::string_view whole) {
   return part.empty() ||
