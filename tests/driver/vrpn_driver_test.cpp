@@ -48,16 +48,13 @@ std::vector<TrackerStation> opened(const std::vector<std::string>& specs) {
   return required(std::move(stations));
 }
 
-/// Two sensors of a tracker that stream into rings.
+/// Two sensors of a server's tracker that stream into rings.
 class Run {
 public:
-  explicit Run(const std::string& place, const std::string& options = "",
-               std::size_t ring_size = 1U << 16U)
+  explicit Run(const std::string& server, std::size_t ring_size = 1U << 16U)
       : zero(ring_size), one(ring_size) {
-    const std::string more = options.empty() ? "" : "&" + options;
-    const std::vector<std::string> specs{"vrpn:" + place + "?sensor=0" + more,
-                                         "vrpn:" + place + "?sensor=1" + more};
-    stations_ = opened(specs);
+    const std::string tracker = "vrpn:Tracker0@" + server;
+    stations_ = opened({tracker + "?sensor=0", tracker + "?sensor=1"});
     start();
   }
   ~Run() { stop(); }
@@ -119,6 +116,15 @@ void check_poses(const std::vector<PoseSample>& samples, std::uint16_t sensor, i
   CHECK(delay_s < 1.0); // a stamp that was mapped wrongly is off by hours
 }
 
+/// Stops, and checks the poses of both sensors, as check_poses() does, and the counts.
+StreamStats stop_and_check(Run& run, int breaks = 0) {
+  run.stop();
+  check_poses(all_in(run.zero), 0, breaks);
+  check_poses(all_in(run.one), 1, breaks);
+  check_conservation(run.stats());
+  return run.stats();
+}
+
 /// Opens one sensor, which must fail with one line that begins with the specification.
 void check_refused(const std::string& spec, Errc code, const std::vector<std::string>& said) {
   CAPTURE(spec);
@@ -155,20 +161,15 @@ bool has_ipv6() {
 TEST_SUITE("vrpn_driver") {
   TEST_CASE("120 poses per second of two sensors arrive whole, in order and soon") {
     const VrpnServer server({"--offset", "5"});
-    Run run("Tracker0@" + server.at());
+    Run run(server.at());
     CHECK(eventually([&] { return std::abs(run.stats().rate_hz - 240.0) < 2.4; }));
     REQUIRE(run.delivers(480));
     run.stop();
-    const auto zero = all_in(run.zero);
-    const auto one = all_in(run.one);
-    check_poses(zero, 0);
-    check_poses(one, 1);
-    const StreamStats stats = run.stats();
-    CHECK(stats.records == zero.size() + one.size());
+    CHECK(run.stats().records == run.zero.size() + run.one.size());
+    const StreamStats stats = stop_and_check(run);
     CHECK(stats.bad_records == 0);
     CHECK(stats.silences == 0);
     CHECK(stats.reopened == 0);
-    check_conservation(stats);
     CHECK(eventually([&] { return server.said("gone"); })); // no client that does not read
     CHECK(server.said("cookie b'vrpn: ver. 07.35  0\\x00\\x00\\x00\\x00\\x00'\nsender 0 Tracker0\n"
                       "type 0 vrpn_Base ping_message\nping of Tracker0"));
@@ -203,55 +204,42 @@ TEST_SUITE("vrpn_driver") {
 
   TEST_CASE("messages that are cut anywhere make no difference") {
     const VrpnServer server({"--cut"});
-    Run run("Tracker0@" + server.at());
+    Run run(server.at());
     REQUIRE(run.delivers(200));
-    run.stop();
-    check_poses(all_in(run.zero), 0);
-    check_poses(all_in(run.one), 1);
-    CHECK(run.stats().bad_records == 0);
-    check_conservation(run.stats());
+    CHECK(stop_and_check(run).bad_records == 0);
   }
 
   TEST_CASE("hostile names and messages between the poses cost none") {
     const VrpnServer server({"--noise"});
-    Run run("Tracker0@" + server.at());
+    Run run(server.at());
     REQUIRE(run.delivers(400));
-    run.stop();
-    check_poses(all_in(run.zero), 0);
-    check_poses(all_in(run.one), 1);
-    CHECK(run.stats().bad_records > 0);
-    CHECK(run.stats().reopened == 0);
-    check_conservation(run.stats());
+    const StreamStats stats = stop_and_check(run);
+    CHECK(stats.bad_records > 0);
+    CHECK(stats.reopened == 0);
   }
 
   TEST_CASE("names and numbers that resemble the tracker's are not taken for it") {
     const VrpnServer server({"--clash"});
-    Run run("Tracker0@" + server.at());
+    Run run(server.at());
     REQUIRE(run.delivers(200));
-    run.stop();
-    check_poses(all_in(run.zero), 0);
-    check_poses(all_in(run.one), 1);
-    CHECK(run.stats().bad_records == 0);
+    CHECK(stop_and_check(run).bad_records == 0);
   }
 
   TEST_CASE("after a message of a wrong length the server is connected again") {
     for (const std::string length : {"0", "23", "65537", "4294967295"}) {
       CAPTURE(length);
       const VrpnServer server({"--bad-length", length});
-      Run run("Tracker0@" + server.at());
+      Run run(server.at());
       REQUIRE(eventually([&] { return run.stats().reopened >= 2; }));
       CHECK(run.delivers_more());
-      run.stop();
-      CHECK(run.stats().bad_records >= 2);
-      check_conservation(run.stats());
-      check_poses(all_in(run.zero), 0, 99);
+      CHECK(stop_and_check(run, 99).bad_records >= 2);
     }
   }
 
   TEST_CASE("a server that restarts, with other numbers and an older clock, is back in 1.5 s") {
     auto server = std::make_unique<VrpnServer>(std::vector<std::string>{"--clash"});
     const std::string port = std::to_string(server->port());
-    Run run("Tracker0@127.0.0.1:" + port);
+    Run run("127.0.0.1:" + port);
     int shortest_ms = 1'000'000; // a busy machine may delay one
     for (int restart = 1; restart <= 3; ++restart) {
       CAPTURE(restart);
@@ -271,16 +259,12 @@ TEST_SUITE("vrpn_driver") {
     }
     CHECK(shortest_ms <= 1500);
     REQUIRE(run.delivers_more());
-    run.stop();
-    check_poses(all_in(run.zero), 0, 3);
-    check_poses(all_in(run.one), 1, 3);
-    CHECK(run.stats().bad_records == 0);
-    check_conservation(run.stats());
+    CHECK(stop_and_check(run, 3).bad_records == 0);
   }
 
   TEST_CASE("a server that hangs is left, and found again") {
     const VrpnServer server;
-    Run run("Tracker0@" + server.at());
+    Run run(server.at());
     REQUIRE(run.delivers_more());
     server.signal(SIGSTOP);
     REQUIRE(eventually([&] { return run.stats().silences == 1; }));
@@ -294,7 +278,7 @@ TEST_SUITE("vrpn_driver") {
 
   TEST_CASE("a tracker that no camera sees stays connected") {
     const VrpnServer server({"--stop-after", "60"});
-    Run run("Tracker0@" + server.at());
+    Run run(server.at());
     REQUIRE(eventually([&] { return run.stats().silences == 1; }));
     std::this_thread::sleep_for(2s);
     run.stop();
@@ -306,7 +290,7 @@ TEST_SUITE("vrpn_driver") {
 
   TEST_CASE("either a pong or a pose shows that the tracker is there") {
     const VrpnServer without_pongs({"--no-pong"});
-    Run run("Tracker0@" + without_pongs.at());
+    Run run(without_pongs.at());
     CHECK(run.delivers(20));
     const VrpnServer without_poses({"--no-poses"});
     const auto quiet = opened({"vrpn:Tracker0@" + without_poses.at()});
@@ -318,7 +302,7 @@ TEST_SUITE("vrpn_driver") {
 
   TEST_CASE("a full ring refuses poses, which are counted") {
     const VrpnServer server;
-    Run run("Tracker0@" + server.at(), "", 8);
+    Run run(server.at(), 8);
     CHECK(eventually([&] { return run.stats().ring_refused > 5; }));
     run.stop();
     const StreamStats stats = run.stats();
@@ -335,7 +319,7 @@ TEST_SUITE("vrpn_driver") {
     };
     {
       const VrpnServer server;
-      Run run("Tracker0@" + server.at());
+      Run run(server.at());
       for (int round = 0; round < 3; ++round) {
         REQUIRE(run.delivers(20));
         check_prompt_stop(run);
@@ -344,14 +328,14 @@ TEST_SUITE("vrpn_driver") {
     }
     for (const auto wait : {0ms, 1000ms, 2500ms}) { // silent, asking, connecting
       VrpnServer server;
-      Run run("Tracker0@" + server.at());
+      Run run(server.at());
       server.signal(SIGSTOP);
       REQUIRE(eventually([&] { return run.stats().silences == 1; }));
       std::this_thread::sleep_for(wait);
       check_prompt_stop(run);
     }
     VrpnServer server;
-    Run run("Tracker0@" + server.at());
+    Run run(server.at());
     server.kill();
     std::this_thread::sleep_for(700ms);
     check_prompt_stop(run);
@@ -409,7 +393,7 @@ TEST_SUITE("vrpn_driver") {
       return;
     }
     const VrpnServer six({"--address", "::1"});
-    Run run("Tracker0@" + six.at("[::1]"));
+    Run run(six.at("[::1]"));
     CHECK(run.delivers(20));
     CHECK(fact_of(run.info(), "server") == six.at("[::1]"));
   }
