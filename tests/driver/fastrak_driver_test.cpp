@@ -17,23 +17,16 @@ using namespace nendo::test;
 
 namespace {
 
-std::unique_ptr<PythonDevice> plug(std::vector<std::string> options = {}) {
-  return std::make_unique<PythonDevice>(NENDO_FASTRAK_DEVICE, std::move(options));
-}
-
 TrackerKind fastrak() {
-  return {plug, [](const std::string& path) { return "fastrak:" + path; }, 33};
+  return {"fastrak", NENDO_FASTRAK_DEVICE, 33};
 }
 
-std::vector<std::string> specs_of(const std::string& path, const std::vector<int>& stations,
-                                  const std::string& more = {}) {
-  return station_specs("fastrak:" + path, stations, more);
-}
-
-constexpr SharedRate shared_rate{120.0, 33, {}};
+constexpr SharedRate shared_rate{120.0, 33};
 
 NumberedPoses stream(const std::vector<std::string>& specs, std::chrono::seconds seconds) {
-  return stream_numbered(specs, seconds, shared_rate);
+  const NumberedPoses heard = stream_numbered(specs, seconds, shared_rate);
+  CHECK(heard.records == heard.count);
+  return heard;
 }
 
 } // namespace
@@ -44,8 +37,8 @@ TEST_SUITE("fastrak_driver") {
   }
 
   TEST_CASE("a FASTRAK reports who it is, and its stations are switched on, the others off") {
-    const auto port = plug({"--plugged", "134"});
-    auto stations = required(open_trackers(specs_of(port->path(), {4, 1})));
+    const auto port = fastrak().plug({"--plugged", "134"});
+    auto stations = required(open_trackers(fastrak().specs(port->path(), {4, 1})));
     CHECK(stations[0].tracker == stations[1].tracker);
     CHECK(stations[0].station == 4);
     const TrackerInfo& info = stations[0].tracker->info();
@@ -66,24 +59,24 @@ TEST_SUITE("fastrak_driver") {
       CHECK_MESSAGE(heard.find(command) != std::string::npos, command);
     stations.clear();
     // A station again, after a run that had switched it off.
-    CHECK(required(open_trackers(specs_of(port->path(), {3}))).front().station == 3);
+    CHECK(required(open_trackers(fastrak().specs(port->path(), {3}))).front().station == 3);
     CHECK(port->ask("counts") == "sent 0 forbidden 0 on 3");
   }
 
   TEST_CASE("the options of a FASTRAK reach it") {
-    const auto port = plug();
+    const auto port = fastrak().plug();
     const auto heard =
-        stream(specs_of(port->path(), {1}, "&baud=115200&hemisphere=0,0,-1&filter=on"), 1s);
+        stream(fastrak().specs(port->path(), {1}, "&baud=115200&hemisphere=0,0,-1&filter=on"), 1s);
     CHECK(heard.wrong == 0);
     const std::string commands = port->ask("heard");
     CHECK(commands.find("H1,0.0000,0.0000,-1.0000") != std::string::npos);
     CHECK(commands.find("x0.2,0.2,0.8,0.8") != std::string::npos);
-    CHECK(required(open_trackers(specs_of(port->path(), {1}, "&filter=on")))
+    CHECK(required(open_trackers(fastrak().specs(port->path(), {1}, "&filter=on")))
               .front()
               .tracker->info()
               .is_filtered);
     // In the other half space it reports the opposite position.
-    const auto turned = stream(specs_of(port->path(), {1}, "&hemisphere=0,0,1"), 1s);
+    const auto turned = stream(fastrak().specs(port->path(), {1}, "&hemisphere=0,0,1"), 1s);
     CHECK(turned.wrong == turned.count);
   }
 
@@ -93,8 +86,8 @@ TEST_SUITE("fastrak_driver") {
           std::pair("19200", "1920"), std::pair("9600", "960")}) {
       const std::string baud = rate; // doctest captures no structured binding
       CAPTURE(baud);
-      const auto port = plug({"--baud", baud});
-      const std::string spec = specs_of(port->path(), {1}).front();
+      const auto port = fastrak().plug({"--baud", baud});
+      const std::string spec = fastrak().specs(port->path(), {1}).front();
       const std::string set = spec + "&baud=" + baud;
       const auto begin = HostClock::now();
       if (std::string_view(bytes).empty()) {
@@ -116,7 +109,7 @@ TEST_SUITE("fastrak_driver") {
   }
 
   TEST_CASE("a FASTRAK at another rate than baud= is not found, and the error says so") {
-    const auto port = plug({"--baud", "57600"});
+    const auto port = fastrak().plug({"--baud", "57600"});
     check_no_tracker("fastrak:" + port->path() + "?baud=115200", "baud rate of 115200");
   }
 
@@ -125,20 +118,20 @@ TEST_SUITE("fastrak_driver") {
       for (const char* baud : {"115200", "57600"}) {
         CAPTURE(odd);
         CAPTURE(baud);
-        const auto port = plug({"--odd", odd, "--baud", baud});
-        CHECK(stream(specs_of(port->path(), {1}), 1s).wrong == 0);
+        const auto port = fastrak().plug({"--odd", odd, "--baud", baud});
+        CHECK(stream(fastrak().specs(port->path(), {1}), 1s).wrong == 0);
         CHECK(port->ask("counts").find("forbidden 0") != std::string::npos);
       }
     }
   }
 
   TEST_CASE("a station without a receiver is an error that lists the others") {
-    const auto port = plug({"--plugged", "13"});
-    const auto none = open_trackers(specs_of(port->path(), {1, 2}));
+    const auto port = fastrak().plug({"--plugged", "13"});
+    const auto none = open_trackers(fastrak().specs(port->path(), {1, 2}));
     REQUIRE_FALSE(none);
     CHECK(none.error().code == Errc::no_device);
     CHECK(none.error().message.find("station 2; plugged in: 1, 3") != std::string::npos);
-    const auto beyond = open_trackers(specs_of(port->path(), {5}));
+    const auto beyond = open_trackers(fastrak().specs(port->path(), {5}));
     REQUIRE_FALSE(beyond);
     CHECK(beyond.error().code == Errc::usage);
     CHECK(beyond.error().message.find("1 to 4") != std::string::npos);
@@ -146,27 +139,27 @@ TEST_SUITE("fastrak_driver") {
 
   TEST_CASE("a FASTRAK that refuses centimetres or a question is an error, without filters it is "
             "used") {
-    const auto inches = plug({"--odd", "inches"});
+    const auto inches = fastrak().plug({"--odd", "inches"});
     check_no_tracker("fastrak:" + inches->path(), "centimetres");
-    const auto deaf = plug({"--odd", "deaf"});
+    const auto deaf = fastrak().plug({"--odd", "deaf"});
     check_no_tracker("fastrak:" + deaf->path(), "later not l");
-    const auto refusing = plug({"--odd", "refuse"});
-    const auto station = required(open_trackers(specs_of(refusing->path(), {1}))).front();
+    const auto refusing = fastrak().plug({"--odd", "refuse"});
+    const auto station = required(open_trackers(fastrak().specs(refusing->path(), {1}))).front();
     CHECK(fact(station.tracker->info(), "refused_commands") ==
           "x0,1,0,0 (error -99), v0,1,0,0 (error -99)");
   }
 
   TEST_CASE("an InterSense tracker is used as a FASTRAK of unknown rate") {
-    const auto port = plug({"--status", "54"});
-    auto stations = required(open_trackers(specs_of(port->path(), {2})));
+    const auto port = fastrak().plug({"--status", "54"});
+    auto stations = required(open_trackers(fastrak().specs(port->path(), {2})));
     CHECK(stations[0].tracker->info().model == "InterSense, as FASTRAK");
     CHECK(stations[0].tracker->info().rate_hz == 0.0);
     stations.clear();
-    CHECK(stream(specs_of(port->path(), {2}), 1s).wrong == 0);
+    CHECK(stream(fastrak().specs(port->path(), {2}), 1s).wrong == 0);
   }
 
   TEST_CASE("an error letter arrives with its pose") {
-    const auto port = plug({"--error", "k"});
+    const auto port = fastrak().plug({"--error", "k"});
     OneStation hand("fastrak:" + port->path());
     test::require_ok(hand.start());
     PoseSample sample;

@@ -2,24 +2,17 @@
 """A Flock of Birds on a pseudo-terminal, for the tests of its driver. Written from the published facts alone.
 usage: flock_device.py [--birds 12] [--units N] [--baud 115200] [--rate 103.3] [--scale 0] [--burst N] [--error N] [--odd WHAT]
 
-It prints its terminal's path, then answers each line of its standard input with one line. `mute` and `unmute` stop and
-start all output, `heard` lists the commands. It ends with its input. It hears and says noise at any other rate of the line.
+It answers `heard`, and what device_terminal.py does.
 
 Each record of a bird has a number n: x is 1000 + n % 1000 steps of 1/8192 of the range, y 200 times the address, z is -700,
-and the receiver is turned about z by n % 1000 times 2 milliradians. --odd: `silent`, `babble`, `streaming` (already, in
-group mode), `standby` (never runs), `erc` (unit 1 is an extended range controller), `deaf` (for 2 s, as after a reset)."""
+and the receiver is turned about z by n % 1000 times 2 milliradians. --odd: `streaming` (already, in group mode),
+`standby` (never runs), `erc` (unit 1 is an extended range controller), `deaf` (for 2 s, as after a reset)."""
 import argparse
 import math
-import os
-import pty
-import select
-import sys
-import termios
 import time
-import tty
 
-SPEEDS = {9600: termios.B9600, 19200: termios.B19200, 38400: termios.B38400, 57600: termios.B57600,
-          115200: termios.B115200}
+import device_terminal
+
 ARGUMENTS = {"L": 2, "O": 1, "M": 1, "H": 12, "J": 12, "r": 6, "q": 6, "0": 1, "A": 1}
 CHANGED = {3: 2, 4: 2, 7: 2, 22: 2, 35: 1, 50: 1}
 QUIET_S = 0.3  # 0.6 s, less what a busy machine takes
@@ -51,7 +44,8 @@ class Flock:
         self.quiet = 0.0
         self.spoils_until = 0.0
 
-    def receive(self, data, now):
+    def receive(self, data):
+        now = time.monotonic()
         if self.options.odd == "deaf" and now < self.begin + 2.0:
             return
         for byte in data:
@@ -148,6 +142,10 @@ class Flock:
                 self.records()
 
 
+def answer(flock, _line):
+    return " ".join(flock.heard) or "nothing"
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--birds", default="12")
@@ -159,40 +157,7 @@ def main():
     parser.add_argument("--error", type=int, default=0)
     parser.add_argument("--odd", default="")
     options = parser.parse_args()
-    flock = Flock(options)
-    master, slave = pty.openpty()
-    tty.setraw(slave)
-    os.set_blocking(master, False)
-    print(os.ttyname(slave), flush=True)
-    muted = False
-    while True:
-        ready, _, _ = select.select([master, sys.stdin], [], [], 0.001)
-        if sys.stdin in ready:
-            line = sys.stdin.readline()
-            if not line:
-                return
-            if line.strip() in ("mute", "unmute"):
-                muted = line.strip() == "mute"
-            print(" ".join(flock.heard) or "nothing", flush=True)
-        data = b""
-        if master in ready:
-            try:
-                data = os.read(master, 4096)
-            except (BlockingIOError, OSError):
-                data = b""
-        is_tuned = termios.tcgetattr(slave)[5] == SPEEDS[options.baud]
-        now = time.monotonic()
-        if options.odd == "babble":
-            flock.out += b"x7 noise 0\r\n"
-        elif options.odd != "silent" and is_tuned:
-            flock.receive(data, now)
-        flock.advance(now)
-        if flock.out and not muted:
-            try:
-                os.write(master, bytes(flock.out) if is_tuned else bytes(b ^ 0x9A for b in flock.out[::2]))
-            except BlockingIOError:
-                pass
-        flock.out.clear()
+    device_terminal.serve(Flock(options), options.baud, options.odd, answer)
 
 
 if __name__ == "__main__":

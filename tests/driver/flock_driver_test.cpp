@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/numbered_poses.hpp"
 #include "support/pty_unit.hpp"
 #include "support/tracker_laws.hpp"
 #include "units/flock_unit.hpp"
@@ -20,25 +21,18 @@ using namespace nendo::test;
 
 namespace {
 
-std::unique_ptr<PythonDevice> plug(std::vector<std::string> options = {}) {
-  return std::make_unique<PythonDevice>(NENDO_FLOCK_DEVICE, std::move(options));
-}
-
 TrackerKind flock() {
-  return {plug, [](const std::string& path) { return "flock:" + path; }, 15};
+  return {"flock", NENDO_FLOCK_DEVICE, 15};
 }
 
-std::vector<std::string> specs_of(const std::string& path, const std::vector<int>& stations,
-                                  const std::string& more = {}) {
-  std::vector<std::string> specs;
-  for (const int station : stations)
-    specs.push_back("flock:" + path + "?station=" + std::to_string(station) + more);
-  return specs;
+TrackerKind birds(const std::string& addresses) {
+  return {"flock", NENDO_FLOCK_DEVICE, 15, {"--birds", addresses}};
 }
 
 /// Returns the number of a record of the Python device, or -1 if it is not the one that was sent.
-int number_of(const PoseSample& sample, double range_in = 36.0) {
-  const double step_m = range_in * 0.0254 / 8192.0;
+template <int range_in = 36>
+int number_of(const PoseSample& sample) {
+  constexpr double step_m = range_in * 0.0254 / 8192.0;
   const double number = sample.position_m[0] / step_m - 1000.0;
   const double half_rad = std::round(number) / 1000.0;
   constexpr double turn_step = 1.0 / 8192.0;
@@ -52,45 +46,15 @@ int number_of(const PoseSample& sample, double range_in = 36.0) {
   return good ? static_cast<int>(std::round(number)) : -1;
 }
 
-/// What arrived at all stations.
-struct Heard {
-  std::size_t wrong = 0;
-  std::size_t lost = 0;
-  std::size_t count = 0;
-  double rate_hz = 0.0; ///< the last station's
-};
+/// Each of so many birds measures by itself.
+template <int range_in = 36>
+SharedRate rate_of(std::size_t count) {
+  return {103.3 * static_cast<double>(count), 15, number_of<range_in>};
+}
 
-Heard stream(const std::vector<std::string>& specs, std::chrono::milliseconds time,
-             double range_in = 36.0) {
-  std::vector<std::unique_ptr<PoseRing>> rings;
-  std::vector<PoseRing*> pointers;
-  for (std::size_t k = 0; k < specs.size(); ++k)
-    pointers.push_back(rings.emplace_back(std::make_unique<PoseRing>(1U << 12U)).get());
-  const auto stations = required(open_trackers(specs));
-  test::require_ok(start_trackers(stations, pointers));
-  std::this_thread::sleep_for(time);
-  stations.front().tracker->stop();
-  const StreamStats stats = stations.front().tracker->stats();
-  CHECK(stats.bad_records == 0);
-  CHECK(stats.ring_refused == 0);
-  check_tracker_conservation(stats, 15);
-  Heard heard;
-  for (const auto& ring : rings) {
-    int last = -1;
-    std::vector<HostTime> arrivals;
-    ring->drain([&](const PoseSample& sample) {
-      const int number = number_of(sample, range_in);
-      if (number < 0) ++heard.wrong;
-      if (last >= 0) heard.lost += static_cast<std::size_t>((number - last + 999) % 1000);
-      last = number;
-      arrivals.push_back(sample.arrival);
-    });
-    REQUIRE(arrivals.size() > 10);
-    heard.count += arrivals.size();
-    heard.rate_hz =
-        static_cast<double>(arrivals.size() - 1) / to_seconds(arrivals.back() - arrivals.front());
-  }
-  return heard;
+template <int range_in = 36>
+NumberedPoses stream(const std::vector<std::string>& specs, std::chrono::milliseconds time) {
+  return stream_numbered(specs, time, rate_of<range_in>(specs.size()));
 }
 
 } // namespace
@@ -98,24 +62,15 @@ Heard stream(const std::vector<std::string>& specs, std::chrono::milliseconds ti
 TEST_SUITE("flock_driver") {
   TEST_CASE("each of one to four birds sends its own 103.3 poses per second, none lost or wrong") {
     for (const std::vector<int>& stations :
-         {std::vector{1}, std::vector{2, 1}, std::vector{1, 2, 3, 4}}) {
-      CAPTURE(stations.size());
-      const auto port = plug({"--birds", std::string("1234").substr(0, stations.size())});
-      Heard heard;
-      for (int tries = 0; tries < 3; ++tries) { // the machine may be busy
-        heard = stream(specs_of(port->path(), stations), 3s);
-        if (std::abs(heard.rate_hz / 103.3 - 1.0) <= 0.01) break;
-      }
-      CHECK(heard.rate_hz == doctest::Approx(103.3).epsilon(0.01));
-      CHECK(heard.wrong == 0);
-      CHECK(heard.lost == 0);
-    }
+         {std::vector{1}, std::vector{2, 1}, std::vector{1, 2, 3, 4}})
+      stations_share_the_rate(birds(std::string("1234").substr(0, stations.size())),
+                              rate_of(stations.size()), {stations});
   }
 
   TEST_CASE("a Flock reports who it is, and all of its birds are set up") {
-    const auto port = plug({"--birds", "134", "--error", "32"});
+    const auto port = flock().plug({"--birds", "134", "--error", "32"});
     const auto stations =
-        required(open_trackers(specs_of(port->path(), {4, 1}, "&hemisphere=upper")));
+        required(open_trackers(flock().specs(port->path(), {4, 1}, "&hemisphere=upper")));
     CHECK(stations[0].tracker == stations[1].tracker);
     const TrackerInfo& info = stations[0].tracker->info();
     CHECK(info.model == "Ascension Flock of Birds, 3 birds");
@@ -135,9 +90,9 @@ TEST_SUITE("flock_driver") {
   }
 
   TEST_CASE("a Flock that slept is woken, and not configured again") {
-    const auto port = plug();
-    CHECK(stream(specs_of(port->path(), {1}), 300ms).wrong == 0);
-    CHECK(stream(specs_of(port->path(), {2}), 300ms).wrong == 0);
+    const auto port = flock().plug();
+    CHECK(stream(flock().specs(port->path(), {1}), 300ms).wrong == 0);
+    CHECK(stream(flock().specs(port->path(), {2}), 300ms).wrong == 0);
     std::string heard;
     CHECK(eventually([&] {
       heard = port->ask("heard");
@@ -147,28 +102,30 @@ TEST_SUITE("flock_driver") {
   }
 
   TEST_CASE("the range of positions is that of scale and controller") {
-    const auto wide = plug({"--scale", "1"});
-    CHECK(stream(specs_of(wide->path(), {1}), 300ms, 72.0).wrong == 0);
-    const auto far = plug({"--birds", "23", "--odd", "erc"});
-    CHECK(stream(specs_of(far->path(), {2, 3}), 300ms, 144.0).wrong == 0);
+    const auto wide = flock().plug({"--scale", "1"});
+    CHECK(stream<72>(flock().specs(wide->path(), {1}), 300ms).wrong == 0);
+    const auto far = flock().plug({"--birds", "23", "--odd", "erc"});
+    CHECK(stream<144>(flock().specs(far->path(), {2, 3}), 300ms).wrong == 0);
     check_no_tracker("flock:" + far->path(), "unit 1 has no receiver; units with one: 2, 3");
   }
 
   TEST_CASE("in the other hemisphere a bird reports the opposite position") {
-    const auto port = plug();
-    CHECK(stream(specs_of(port->path(), {1}, "&hemisphere=upper"), 300ms).wrong == 0);
-    const Heard turned = stream(specs_of(port->path(), {1}, "&hemisphere=lower"), 300ms);
+    const auto port = flock().plug();
+    CHECK(stream(flock().specs(port->path(), {1}, "&hemisphere=upper"), 300ms).wrong == 0);
+    const NumberedPoses turned =
+        stream(flock().specs(port->path(), {1}, "&hemisphere=lower"), 300ms);
     CHECK(turned.wrong == turned.count);
   }
 
   TEST_CASE("a Flock is found at each rate of its line, and one that is too slow is refused") {
     for (const char* baud : {"115200", "57600", "38400", "19200"}) {
       CAPTURE(baud);
-      const auto port = plug({"--baud", baud, "--birds", "1"});
-      CHECK(stream(specs_of(port->path(), {1}), 300ms).wrong == 0);
-      CHECK(stream(specs_of(port->path(), {1}, std::string("&baud=") + baud), 300ms).wrong == 0);
+      const auto port = flock().plug({"--baud", baud, "--birds", "1"});
+      CHECK(stream(flock().specs(port->path(), {1}), 300ms).wrong == 0);
+      CHECK(stream(flock().specs(port->path(), {1}, std::string("&baud=") + baud), 300ms).wrong ==
+            0);
     }
-    const auto slow = plug({"--baud", "9600", "--birds", "1"});
+    const auto slow = flock().plug({"--baud", "9600", "--birds", "1"});
     for (const char* option : {"", "?baud=9600"}) {
       const auto refused = open_trackers(std::vector{"flock:" + slow->path() + option});
       REQUIRE_FALSE(refused);
@@ -184,20 +141,20 @@ TEST_SUITE("flock_driver") {
     for (const char* odd : {"streaming", "deaf"}) {
       for (const char* baud : {"115200", "38400"}) {
         CAPTURE(odd);
-        const auto port = plug({"--odd", odd, "--baud", baud});
-        CHECK(stream(specs_of(port->path(), {1, 2}), 300ms).wrong == 0);
+        const auto port = flock().plug({"--odd", odd, "--baud", baud});
+        CHECK(stream(flock().specs(port->path(), {1, 2}), 300ms).wrong == 0);
       }
     }
   }
 
   TEST_CASE("units that do not run are an error that names their switches") {
-    const auto port = plug({"--odd", "standby"});
+    const auto port = flock().plug({"--odd", "standby"});
     check_no_tracker("flock:" + port->path(), "fly");
   }
 
   TEST_CASE("the birds of a cycle are measured together, when its first byte was sent") {
-    const auto port = plug({"--burst", "3"});
-    const auto stations = required(open_trackers(specs_of(port->path(), {1, 2})));
+    const auto port = flock().plug({"--burst", "3"});
+    const auto stations = required(open_trackers(flock().specs(port->path(), {1, 2})));
     PoseRing one(4096);
     PoseRing two(4096);
     PoseRing* const rings[]{&one, &two};
@@ -208,7 +165,7 @@ TEST_SUITE("flock_driver") {
     PoseSample first;
     PoseSample second;
     while (one.try_pop(first) && two.try_pop(second)) {
-      CHECK(number_of(first) == number_of(second));
+      CHECK(number_of<>(first) == number_of<>(second));
       if (first.arrival != second.arrival) continue; // the chunk was cut within the cycle
       ++together;
       CHECK(first.measured == second.measured);
@@ -258,22 +215,16 @@ TEST_SUITE("flock_driver") {
     no_tracker_is_an_error_that_says_so(flock());
   }
   TEST_CASE("a Flock's poses are in order and add up") {
-    TrackerKind kind = flock();
-    kind.plug = [](std::vector<std::string>) { return plug({"--birds", "1"}); };
-    poses_are_in_order_and_add_up(kind);
+    poses_are_in_order_and_add_up(birds("1"));
   }
   TEST_CASE("a full ring refuses a Flock's poses and they are counted") {
-    TrackerKind kind = flock();
-    kind.plug = [](std::vector<std::string>) { return plug({"--birds", "1"}); };
-    a_full_ring_refuses_poses_and_counts(kind);
+    a_full_ring_refuses_poses_and_counts(birds("1"));
   }
   TEST_CASE("a Flock stops promptly and starts again") {
     a_tracker_stops_promptly_and_starts_again(flock());
   }
   TEST_CASE("a Flock that falls silent is started again") {
-    TrackerKind kind = flock();
-    kind.plug = [](std::vector<std::string>) { return plug({"--birds", "1"}); };
-    a_silent_tracker_is_started_again(kind);
+    a_silent_tracker_is_started_again(birds("1"));
   }
   TEST_CASE("a Flock stops promptly while it is silent or away") {
     a_tracker_stops_promptly_while_silent_or_away(flock());

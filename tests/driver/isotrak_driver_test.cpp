@@ -18,25 +18,21 @@ using namespace nendo::test;
 
 namespace {
 
-std::unique_ptr<PythonDevice> plug(std::vector<std::string> options = {}) {
-  return std::make_unique<PythonDevice>(NENDO_ISOTRAK_DEVICE, std::move(options));
-}
-
 TrackerKind isotrak() {
-  return {plug, [](const std::string& path) { return "isotrak:" + path; }, 20};
-}
-
-std::vector<std::string> specs_of(const std::string& path, const std::vector<int>& stations,
-                                  const std::string& more = {}) {
-  return station_specs("isotrak:" + path, stations, more);
+  return {"isotrak", NENDO_ISOTRAK_DEVICE, 20};
 }
 
 // Half a step of the format is 1.6632 m / 32767 / 2 = 25.4 um, and 15.3e-6 in a quaternion. The
 // latter's norm is then off by twice as much at most, for which the driver corrects.
-constexpr SharedRate shared_rate{60.0, 20, {26e-6, 50e-6}};
+int number_in(const PoseSample& sample) {
+  return number_within({26e-6, 50e-6}, sample);
+}
+constexpr SharedRate shared_rate{60.0, 20, number_in};
 
 NumberedPoses stream(const std::vector<std::string>& specs, std::chrono::seconds seconds) {
-  return stream_numbered(specs, seconds, shared_rate);
+  const NumberedPoses heard = stream_numbered(specs, seconds, shared_rate);
+  CHECK(heard.records == heard.count);
+  return heard;
 }
 
 } // namespace
@@ -47,8 +43,8 @@ TEST_SUITE("isotrak_driver") {
   }
 
   TEST_CASE("an ISOTRAK reports who it is, and the station that is not wanted is off") {
-    const auto port = plug();
-    auto stations = required(open_trackers(specs_of(port->path(), {2})));
+    const auto port = isotrak().plug();
+    auto stations = required(open_trackers(isotrak().specs(port->path(), {2})));
     const TrackerInfo& info = stations[0].tracker->info();
     CHECK(info.model == "Polhemus ISOTRAK II");
     CHECK(info.stations == std::vector<std::uint16_t>{2});
@@ -67,25 +63,25 @@ TEST_SUITE("isotrak_driver") {
       CHECK_MESSAGE(heard.find(command) != std::string::npos, command);
     stations.clear();
     // Both again, after a run that had switched one off.
-    stations = required(open_trackers(specs_of(port->path(), {1, 2})));
+    stations = required(open_trackers(isotrak().specs(port->path(), {1, 2})));
     CHECK(stations[0].tracker == stations[1].tracker);
     CHECK(port->ask("counts").find("on 12") != std::string::npos);
   }
 
   TEST_CASE("the options of an ISOTRAK reach it") {
-    const auto port = plug();
+    const auto port = isotrak().plug();
     const auto heard =
-        stream(specs_of(port->path(), {1}, "&baud=115200&hemisphere=0,0,-1&filter=on"), 1s);
+        stream(isotrak().specs(port->path(), {1}, "&baud=115200&hemisphere=0,0,-1&filter=on"), 1s);
     CHECK(heard.wrong == 0);
     const std::string commands = port->ask("heard");
     CHECK(commands.find("H1,0.0000,0.0000,-1.0000") != std::string::npos);
     CHECK(commands.find("x0.2,0.2,0.8,0.8") != std::string::npos);
-    CHECK(required(open_trackers(specs_of(port->path(), {1}, "&filter=on")))
+    CHECK(required(open_trackers(isotrak().specs(port->path(), {1}, "&filter=on")))
               .front()
               .tracker->info()
               .is_filtered);
     // In the other half space it reports the opposite position.
-    const auto turned = stream(specs_of(port->path(), {1}, "&hemisphere=0,0,1"), 1s);
+    const auto turned = stream(isotrak().specs(port->path(), {1}, "&hemisphere=0,0,1"), 1s);
     CHECK(turned.wrong == turned.count);
   }
 
@@ -93,20 +89,20 @@ TEST_SUITE("isotrak_driver") {
     for (const char* rate : {"115200", "57600", "38400", "19200"}) {
       const std::string baud = rate;
       CAPTURE(baud);
-      const auto port = plug({"--baud", baud});
-      const std::string spec = specs_of(port->path(), {1}).front();
+      const auto port = isotrak().plug({"--baud", baud});
+      const std::string spec = isotrak().specs(port->path(), {1}).front();
       CHECK(fact(required(open_trackers(std::vector{spec})).front().tracker->info(), "baud") ==
             baud);
       CHECK(stream({spec + "&baud=" + baud}, 1s).wrong == 0);
     }
-    const auto port = plug({"--baud", "9600"});
+    const auto port = isotrak().plug({"--baud", "9600"});
     check_no_tracker("isotrak:" + port->path(),
                      "a line of 9600 baud carries 960 bytes per second, and 60 records per second "
                      "of 20 bytes need 1200; set the tracker's line to 19200");
   }
 
   TEST_CASE("an ISOTRAK at another rate than baud= is not found, and the error says so") {
-    const auto port = plug({"--baud", "57600"});
+    const auto port = isotrak().plug({"--baud", "57600"});
     check_no_tracker("isotrak:" + port->path() + "?baud=115200", "baud rate of 115200");
   }
 
@@ -115,27 +111,27 @@ TEST_SUITE("isotrak_driver") {
       for (const char* baud : {"115200", "57600"}) {
         CAPTURE(odd);
         CAPTURE(baud);
-        const auto port = plug({"--odd", odd, "--baud", baud});
-        CHECK(stream(specs_of(port->path(), {1}), 1s).wrong == 0);
+        const auto port = isotrak().plug({"--odd", odd, "--baud", baud});
+        CHECK(stream(isotrak().specs(port->path(), {1}), 1s).wrong == 0);
         CHECK(port->ask("counts").find("forbidden 0") != std::string::npos);
       }
     }
   }
 
   TEST_CASE("a station of an ISOTRAK without a receiver is an error that names the other") {
-    const auto one = plug({"--plugged", "1"});
+    const auto one = isotrak().plug({"--plugged", "1"});
     check_no_tracker("isotrak:" + one->path() + "?station=2",
                      "no receiver is plugged in at station 2; plugged in: 1");
-    CHECK(stream(specs_of(one->path(), {1}), 1s).wrong == 0);
-    const auto none = plug({"--plugged", ""});
+    CHECK(stream(isotrak().specs(one->path(), {1}), 1s).wrong == 0);
+    const auto none = isotrak().plug({"--plugged", ""});
     check_no_tracker("isotrak:" + none->path(), "is a receiver plugged in");
   }
 
   TEST_CASE("an ISOTRAK without quaternions is an error, and without filters it is used") {
-    const auto old = plug({"--odd", "old"});
+    const auto old = isotrak().plug({"--odd", "old"});
     check_no_tracker("isotrak:" + old->path(), "does not send the records");
-    const auto refusing = plug({"--odd", "refuse"});
-    const auto station = required(open_trackers(specs_of(refusing->path(), {1}))).front();
+    const auto refusing = isotrak().plug({"--odd", "refuse"});
+    const auto station = required(open_trackers(isotrak().specs(refusing->path(), {1}))).front();
     CHECK(fact(station.tracker->info(), "refused_commands") ==
           "x0,1,0,0 (error -99), v0,1,0,0 (error -99)");
   }
@@ -143,14 +139,14 @@ TEST_SUITE("isotrak_driver") {
   TEST_CASE("an error letter of an ISOTRAK arrives with its pose, and a button is none") {
     for (const auto& [third, error] :
          {std::pair("*", ' '), std::pair("@", ' '), std::pair(" ", ' '), std::pair("C", 'C')}) {
-      const auto port = plug({"--third", third});
+      const auto port = isotrak().plug({"--third", third});
       OneStation hand("isotrak:" + port->path());
       test::require_ok(hand.start());
       PoseSample sample;
       REQUIRE(eventually([&] { return hand.ring.try_pop(sample); }));
       hand.tracker().stop();
       CHECK(sample.error == error);
-      CHECK(number_of(sample, shared_rate.tolerance) >= 0);
+      CHECK(number_in(sample) >= 0);
     }
   }
 
@@ -162,7 +158,7 @@ TEST_SUITE("isotrak_driver") {
   TEST_CASE("a FASTRAK is no ISOTRAK, nor is an ISOTRAK a FASTRAK") {
     const PythonDevice fastrak(NENDO_FASTRAK_DEVICE);
     check_no_tracker("isotrak:" + fastrak.path(), "what is there is no ISOTRAK II");
-    const auto port = plug();
+    const auto port = isotrak().plug();
     check_no_tracker("fastrak:" + port->path(), "what is there is no FASTRAK");
   }
 

@@ -19,20 +19,16 @@ using namespace nendo::test;
 
 namespace {
 
-std::unique_ptr<PythonDevice> plug(std::vector<std::string> options = {}) {
-  return std::make_unique<PythonDevice>(NENDO_LIBERTY_DEVICE, std::move(options));
+TrackerKind patriot() {
+  return {"liberty", NENDO_LIBERTY_DEVICE, 50};
 }
 
-TrackerKind patriot() {
-  return {plug, [](const std::string& path) { return "liberty:" + path; }, 50};
+std::unique_ptr<PythonDevice> plug(std::vector<std::string> options = {}) {
+  return patriot().plug(std::move(options));
 }
 
 TrackerKind patriot_of_one_station() {
-  return {[](std::vector<std::string> options) {
-            options.insert(options.end(), {"--stations", "1"});
-            return plug(std::move(options));
-          },
-          patriot().spec, 50};
+  return {"liberty", NENDO_LIBERTY_DEVICE, 50, {"--stations", "1"}};
 }
 
 /// What arrived at a station.

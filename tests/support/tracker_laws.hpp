@@ -2,13 +2,14 @@
 // Checks that every streamed tracker must pass. Each function is the body of a test case.
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -26,9 +27,25 @@ using namespace std::chrono_literals;
 
 /// A kind of tracker that a Python program emulates.
 struct TrackerKind {
-  std::function<std::unique_ptr<PythonDevice>(std::vector<std::string> options)> plug;
-  std::function<std::string(const std::string& path)> spec; ///< names station 1
+  std::string name;   ///< in specifications
+  std::string script; ///< the program
   std::uint64_t longest_record = 0;
+  std::vector<std::string> options = {}; ///< the program's, before those of plug()
+
+  std::unique_ptr<PythonDevice> plug(std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), options.begin(), options.end());
+    return std::make_unique<PythonDevice>(script, std::move(more));
+  }
+  /// Returns the specification of its first station.
+  std::string spec(const std::string& path) const { return name + ":" + path; }
+  /// Returns a specification for each of these stations.
+  std::vector<std::string> specs(const std::string& path, const std::vector<int>& stations,
+                                 const std::string& more = {}) const {
+    std::vector<std::string> list;
+    for (const int station : stations)
+      list.push_back(spec(path) + "?station=" + std::to_string(station) + more);
+    return list;
+  }
 };
 
 /// A station of an open tracker, and the ring of its poses.
@@ -83,7 +100,7 @@ inline void no_tracker_is_an_error_that_says_so(const TrackerKind& kind) {
 }
 
 inline void poses_are_in_order_and_add_up(const TrackerKind& kind) {
-  const auto port = kind.plug({});
+  const auto port = kind.plug();
   OneStation hand(kind.spec(port->path()));
   const HostTime before = HostClock::now();
   test::require_ok(hand.start());
@@ -111,7 +128,7 @@ inline void poses_are_in_order_and_add_up(const TrackerKind& kind) {
 }
 
 inline void a_full_ring_refuses_poses_and_counts(const TrackerKind& kind) {
-  const auto port = kind.plug({});
+  const auto port = kind.plug();
   OneStation hand(kind.spec(port->path()), 8);
   test::require_ok(hand.start());
   CHECK(eventually([&] { return hand.tracker().stats().ring_refused > 5; }));
@@ -121,7 +138,7 @@ inline void a_full_ring_refuses_poses_and_counts(const TrackerKind& kind) {
 }
 
 inline void a_tracker_stops_promptly_and_starts_again(const TrackerKind& kind) {
-  const auto port = kind.plug({});
+  const auto port = kind.plug();
   OneStation hand(kind.spec(port->path()));
   for (int round = 0; round < 2; ++round) {
     test::require_ok(hand.start());
@@ -134,7 +151,7 @@ inline void a_tracker_stops_promptly_and_starts_again(const TrackerKind& kind) {
 }
 
 inline void a_silent_tracker_is_started_again(const TrackerKind& kind) {
-  const auto port = kind.plug({});
+  const auto port = kind.plug();
   OneStation hand(kind.spec(port->path()));
   test::require_ok(hand.start());
   REQUIRE(eventually([&] { return hand.tracker().stats().records > 3; }));
@@ -154,7 +171,7 @@ inline void a_silent_tracker_is_started_again(const TrackerKind& kind) {
 inline void a_tracker_stops_promptly_while_silent_or_away(const TrackerKind& kind) {
   for (const bool away : {false, true}) {
     CAPTURE(away);
-    const auto port = kind.plug({});
+    const auto port = kind.plug();
     OneStation hand(kind.spec(port->path()));
     test::require_ok(hand.start());
     REQUIRE(eventually([&] { return hand.tracker().stats().records > 3; }));
@@ -174,7 +191,7 @@ inline void a_tracker_stops_promptly_while_silent_or_away(const TrackerKind& kin
 inline void a_tracker_that_vanishes_is_found_again(const TrackerKind& kind) {
   const TemporaryFolder folder;
   const auto link = folder.path() / "tracker";
-  auto first = kind.plug({});
+  auto first = kind.plug();
   std::filesystem::create_symlink(first->path(), link);
   OneStation hand(kind.spec(link.string()));
   test::require_ok(hand.start());
@@ -182,7 +199,7 @@ inline void a_tracker_that_vanishes_is_found_again(const TrackerKind& kind) {
 
   first.reset();
   std::filesystem::remove(link);
-  const auto second = kind.plug({});
+  const auto second = kind.plug();
   std::filesystem::create_symlink(second->path(), link);
   REQUIRE(eventually([&] { return hand.tracker().stats().reopened == 1; }));
   hand.ring.drain([](const PoseSample&) {});
