@@ -25,8 +25,7 @@
 #include "nendo/commands.hpp"
 #include "nendo/picture.hpp"
 #include "render/picture.hpp"
-#include "session/open_hands.hpp"
-#include "session/run_session.hpp"
+#include "session/run_and_report.hpp"
 #include "takes/model_files.hpp"
 #include "takes/take.hpp"
 
@@ -219,13 +218,8 @@ Result<void> run_hands(session::RunOptions& run, deform::Mesh model) {
   if (!opened) return opened.error();
   for (auto& hand : opened->hands) // the default calibration is right for emulated hands
     hand.uncalibrated = false;
-  session::RunParticipants participants;
-  participants.progress = session::progress_for(run, opened->hands);
-  const auto outcome =
-      session::run_session(run, opened->hands, std::move(model), participants, opened->grants);
-  if (!outcome) return outcome.error();
-  session::print_summary(run, opened->hands, *outcome);
-  return {};
+  const auto outcome = session::run_and_report(run, *opened, std::move(model), {}, {}, {});
+  return outcome ? Result<void>() : outcome.error();
 }
 
 struct Work {

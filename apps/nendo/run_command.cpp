@@ -22,10 +22,7 @@
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
 #include "nendo/run_arguments.hpp"
-#include "service/service_notice.hpp"
-#include "session/open_hands.hpp"
-#include "session/run_publishing.hpp"
-#include "session/run_session.hpp"
+#include "session/run_and_report.hpp"
 #include "takes/model_files.hpp"
 
 namespace nendo::app::run_command {
@@ -163,28 +160,15 @@ int run(RunArguments& options) {
   EventCount event_count;
   auto opened = session::open_hands(wanted, *model, event_count);
   if (!opened) return cli::report(opened.error());
-  service::ServiceNotice service;
   session::RunParticipants participants;
-  participants.progress = [&service, shown = session::progress_for(wanted, opened->hands)](
-                              const flow::Frame& frame, double elapsed_s) {
-    service.alive();
-    shown(frame, elapsed_s);
-  };
-  for (const auto& sink : *published)
-    participants.sinks.push_back(sink.get());
   if (views->browser) {
     participants.sinks.push_back(views->browser.get());
     participants.observers.push_back(views->browser.get());
   }
   if (views->window) participants.observers.push_back(views->window.get());
-  auto grants = process.grants();
-  grants.insert(grants.end(), opened->grants.begin(), opened->grants.end());
-  auto outcome =
-      session::run_session(wanted, opened->hands, *std::move(model), participants, grants);
+  const auto outcome = session::run_and_report(wanted, *opened, *std::move(model), *published,
+                                               std::move(participants), process.grants());
   if (!outcome) return cli::report(outcome.error());
-  for (const auto& sink : *published)
-    outcome->published.push_back(sink->end());
-  session::print_summary(wanted, opened->hands, *outcome);
   if (const auto kept = keep_learned(wanted, opened->hands, outcome->stats); !kept)
     return cli::report(kept.error());
   const bool recorded =

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <spdlog/fmt/fmt.h>
@@ -11,10 +12,7 @@
 #include "cli/cli.hpp"
 #include "nendo/commands.hpp"
 #include "serve/server.hpp"
-#include "service/service_notice.hpp"
-#include "session/open_hands.hpp"
-#include "session/run_publishing.hpp"
-#include "session/run_session.hpp"
+#include "session/run_and_report.hpp"
 #include "session/setting_options.hpp"
 #include "session/views.hpp"
 
@@ -103,27 +101,15 @@ int serve_hands(Options& options) {
   run.loop.input_log = &(*server)->input();
   ServerSink served(**server);
   cli::note("serving at " + (*server)->path());
-  service::ServiceNotice service;
   session::RunParticipants participants;
   participants.sinks.push_back(&served);
-  participants.progress = [&service, shown = session::progress_for(run, opened->hands)](
-                              const flow::Frame& frame, double elapsed_s) {
-    service.alive();
-    shown(frame, elapsed_s);
-  };
-  for (const auto& sink : *published)
-    participants.sinks.push_back(sink.get());
   if (browser) {
     participants.sinks.push_back(browser.get());
     participants.observers.push_back(browser.get());
   }
-  auto grants = process.grants();
-  grants.insert(grants.end(), opened->grants.begin(), opened->grants.end());
-  auto outcome = session::run_session(run, opened->hands, no_model, participants, grants);
+  const auto outcome = session::run_and_report(run, *opened, no_model, *published,
+                                               std::move(participants), process.grants());
   if (!outcome) return cli::report(outcome.error());
-  for (const auto& sink : *published)
-    outcome->published.push_back(sink->end());
-  session::print_summary(run, opened->hands, *outcome);
   report_clients((*server)->counters());
   return 0;
 }
