@@ -129,7 +129,10 @@ void add_info(py::module_& module) {
           "self_calibrated", [](const Info& own) { return own.counts.self_calibrated; },
           "Whether 0 is a straight joint, and max_count a bent one.")
       .def_property_readonly(
-          "kind", [](const Info& own) { return name_of_source(own.kind); },
+          "kind",
+          [](const Info& own) {
+            return driver::source_kind_names[static_cast<std::size_t>(own.kind)];
+          },
           "\"device\", \"simulated\" or \"recorded\".")
       .def_property_readonly(
           "facts", [](const Info& own) { return facts_of(own.facts); },

@@ -18,12 +18,6 @@ inline py::dict facts_of(const std::vector<driver::DeviceFact>& facts) {
     all[to_str(fact.name)] = to_str(fact.value);
   return all;
 }
-/// Returns "device", "simulated" or "recorded".
-constexpr const char* name_of_source(driver::SourceKind kind) noexcept {
-  return kind == driver::SourceKind::device      ? "device"
-         : kind == driver::SourceKind::simulated ? "simulated"
-                                                 : "recorded";
-}
 inline std::size_t capacity_of(std::int64_t capacity) {
   constexpr std::int64_t most = 1'000'000'000;
   if (capacity < 1 || capacity > most)
