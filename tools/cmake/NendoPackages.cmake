@@ -1,6 +1,7 @@
 # Debian packages, split as Debian does: the program, the libraries (named by their soname, so that two versions can be
 # installed beside each other), what one builds programs with, the udev rules, which are no version's and therefore
-# a package of their own, and nendo-markers, which needs OpenCV. tools/package builds and checks them.
+# a package of their own, nendo-markers, which needs OpenCV, and the module for Python, which needs one version of it.
+# tools/package builds and checks them.
 set(NENDO_SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(library_package libnendo${NENDO_SOVERSION})
 
@@ -17,6 +18,9 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
 set(CPACK_COMPONENTS_ALL program library development udev)
 if(NENDO_MARKERS)
   list(APPEND CPACK_COMPONENTS_ALL markers)
+endif()
+if(NENDO_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -57,6 +61,11 @@ if(NENDO_MARKERS)
     "This package has nendo-markers, which finds printed bracelets in the pictures
 of a camera, and sends where the wrists are to a run of nendo.")
 endif()
+if(NENDO_PYTHON)
+  nendo_package(python python3-nendo python "data gloves that shape 3-D models - Python module"
+    "This package has the module nendo, with which Python reads gloves, poses
+hands, deforms meshes and replays recordings, as NumPy arrays.")
+endif()
 
 set(same "(= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
@@ -70,6 +79,20 @@ set(CPACK_DEBIAN_UDEV_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_MARKERS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_MARKERS_PACKAGE_DEPENDS "${library_package} ${same}")
 set(CPACK_DEBIAN_MARKERS_PACKAGE_RECOMMENDS nendo)
+if(NENDO_PYTHON)
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${library_package} ${same}, python3-numpy, \
+python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}~), python3 (<< ${Python_VERSION_MAJOR}.${next_minor})")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS nendo-udev)
+  # As dh_python3 makes them: compiled files come with the package, and go with it.
+  set(shell "#!/bin/sh\nset -e\n")
+  file(WRITE ${PROJECT_BINARY_DIR}/debian/postinst
+    "${shell}if [ \"$1\" = configure ] && command -v py3compile >/dev/null; then\n  py3compile -p python3-nendo\nfi\n")
+  file(WRITE ${PROJECT_BINARY_DIR}/debian/prerm
+    "${shell}if command -v py3clean >/dev/null; then\n  py3clean -p python3-nendo\nfi\n")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/postinst ${PROJECT_BINARY_DIR}/debian/prerm)
+endif()
 
 # Files that debhelper would make.
 string(TIMESTAMP when "%a, %d %b %Y %H:%M:%S +0000" UTC) # of SOURCE_DATE_EPOCH, if that is set
