@@ -48,7 +48,7 @@ class Gloves(TestCase):
         self.assertEqual((stats["dropped"], stats["refused"]), (0, 0))
         self.assertEqual(len(samples), stats["records"])
         np.testing.assert_array_equal(np.diff(samples["sequence"]), 1)
-        self.assertGreater(len(samples), 10 * seconds)  # of 500, but a busy machine makes fewer
+        self.assertGreater(len(samples), 0.3 * 500 * seconds)
 
     def test_a_full_queue_drops_the_oldest_samples_and_counts_them(self):
         with nendo.open("sim?rate=500", capacity=10) as glove:

@@ -74,7 +74,7 @@ class Sessions(TestCase):
         self.run_nendo("record", "sim:grasp", "--duration", "1s", "--out", "take.nendo")
         with nendo.Session(MOAI, right=f"replay:{self.folder}/take.nendo") as session:
             frames = list(session)
-        self.assertGreater(len(frames), 1)
+        self.assertGreater(len(frames), 20)
 
     def test_errors_and_ctrl_c(self):
         for wrong, kind in (({"left": "abacus:1"}, nendo.Error), ({"mode": "type3"}, ValueError),
