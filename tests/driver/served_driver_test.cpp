@@ -131,12 +131,7 @@ struct GloveLaws {
 };
 
 const test::TrackerKind tracker_kind{
-    [](const std::vector<std::string>& options) {
-      std::vector<std::string> all{"--trackers", "right", "--gloves", ""};
-      all.insert(all.end(), options.begin(), options.end());
-      return std::make_unique<PythonDevice>(NENDO_SERVE_SERVER, all);
-    },
-    [](const std::string& /*path*/) { return std::string("serve:"); }, longest};
+    "serve", NENDO_SERVE_SERVER, longest, {"--trackers", "right", "--gloves", ""}, false};
 
 } // namespace
 

@@ -31,13 +31,16 @@ struct TrackerKind {
   std::string script; ///< the program
   std::uint64_t longest_record = 0;
   std::vector<std::string> options = {}; ///< the program's, before those of plug()
+  bool is_named_by_path = true;          ///< specifications have the path of the program's port
 
   std::unique_ptr<PythonDevice> plug(std::vector<std::string> more = {}) const {
     more.insert(more.begin(), options.begin(), options.end());
     return std::make_unique<PythonDevice>(script, std::move(more));
   }
   /// Returns the specification of its first station.
-  std::string spec(const std::string& path) const { return name + ":" + path; }
+  std::string spec(const std::string& path) const {
+    return name + ":" + (is_named_by_path ? path : "");
+  }
   /// Returns a specification for each of these stations.
   std::vector<std::string> specs(const std::string& path, const std::vector<int>& stations,
                                  const std::string& more = {}) const {
