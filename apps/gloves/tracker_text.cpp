@@ -91,6 +91,7 @@ std::string no_pose_advice(const driver::TrackerStation& station) {
                     "machine or to the address that osc:ADDRESS:PORT names"},
       Advice{"vrpn", "check that the server tracks this sensor, or name another one"},
       Advice{"evdev", "plug the device in again"},
+      Advice{"serve", "check that `nendo serve` still gets poses of this tracker"},
       Advice{"replay", "check that the recording does not begin with a pause"}};
   const auto spec = driver::parse_device_spec(station.source);
   const std::string_view kind = spec ? std::string_view(spec->kind) : std::string_view{};

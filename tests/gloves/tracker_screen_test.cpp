@@ -187,6 +187,7 @@ TEST_SUITE("wrist_notices") {
           {"osc:9000/left", "to this port"},
           {"vrpn:Tracker0@host?sensor=0", "server tracks this sensor"},
           {"evdev:SpaceMouse", "plug the device in again"},
+          {"serve:right", "nendo serve"},
           {"replay:take.nendo?hand=left", "recording"}}) {
       const std::string advice = no_pose_advice({nullptr, 3, source});
       CAPTURE(advice);
