@@ -15,7 +15,7 @@ namespace nendo::serve {
 namespace {
 
 /// The time that a client has to read its error.
-constexpr std::chrono::seconds closing_time{2};
+constexpr std::chrono::milliseconds closing_time{500};
 
 } // namespace
 
