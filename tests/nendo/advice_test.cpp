@@ -179,10 +179,11 @@ TEST_SUITE("advice") {
 
   TEST_CASE_FIXTURE(Fixture,
                     "the help that a wrong usage names is about the option that is missing") {
-    for (const auto& [command, option] :
+    for (const auto& [usage, option] :
          {std::pair{"nendo edit make take.nendo", "--out"},
           std::pair{"nendo picture a.obj", "--out"}, std::pair{"nendo calibration import", "FILE"},
           std::pair{"nendo edit copy t", "--hand"}}) {
+      const std::string command = usage; // Clang 14 lets no lambda capture a binding
       CAPTURE(command);
       const auto refused = type(command);
       CHECK(refused.exit_code == 2);
