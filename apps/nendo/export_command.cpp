@@ -18,11 +18,13 @@
 #include "cli/print.hpp"
 #include "cli/quantities.hpp"
 #include "export/gltf_export.hpp"
+#include "export/mcap_file.hpp"
 #include "export/motion_files.hpp"
 #include "export/shape_files.hpp"
 #include "nendo/commands.hpp"
 #include "takes/model_files.hpp"
 #include "takes/recorded_frames.hpp"
+#include "takes/tape_commands.hpp"
 #include "takes/timeline_frames.hpp"
 #include "timeline/timeline.hpp"
 
@@ -44,8 +46,8 @@ struct Options {
   bool json = false;
 };
 
-constexpr std::array<std::string_view, 8> export_endings{".glb", ".pc2", ".mdd", ".obj",
-                                                         ".ply", ".stl", ".bvh", ".csv"};
+constexpr std::array<std::string_view, 9> export_endings{".glb", ".pc2", ".mdd", ".obj", ".ply",
+                                                         ".stl", ".bvh", ".csv", ".mcap"};
 
 bool is_sequence(const std::string& format) {
   return !ending_of("." + format, deform::mesh_endings).empty();
@@ -83,9 +85,18 @@ Result<exporting::GltfOptions> parse_tolerance(const std::string& text) {
 Result<void> check_rate(const Options& options, const std::string& format) {
   if (options.every_frame && options.rate_hz)
     return Error{Errc::usage, "--every-frame and --rate: give one of them"};
-  if (options.every_frame && format != "glb" && format != "csv")
-    return Error{Errc::usage, "--every-frame: only .glb and .csv store the time of each frame; use "
-                              "--rate"};
+  if (options.every_frame && format != "glb" && format != "csv" && format != "mcap")
+    return Error{Errc::usage, "--every-frame: only .glb, .csv and .mcap store the time of each "
+                              "frame; use --rate"};
+  return {};
+}
+
+/// A recording for ROS 2 has hands, and no model.
+Result<void> check_mcap(const Options& options) {
+  if (options.no_hands)
+    return Error{Errc::usage, "--no-hands: an .mcap file has nothing but hands; leave it out"};
+  if (options.tolerance != Options{}.tolerance)
+    return Error{Errc::usage, "--tolerance: an .mcap file has no model; leave it out"};
   return {};
 }
 
@@ -97,6 +108,8 @@ Result<std::string> check(const Options& options, const exporting::Choice& choic
   const auto format = format_of(options);
   if (!format) return format;
   if (const auto fine = check_rate(options, *format); !fine) return fine.error();
+  if (*format == "mcap")
+    if (const auto fine = check_mcap(options); !fine) return fine.error();
   if (options.samples && *format != "csv")
     return Error{Errc::usage, "--samples: needs a .csv file"};
   if (!is_sequence(*format)) return format;
@@ -108,7 +121,9 @@ Result<std::string> check(const Options& options, const exporting::Choice& choic
 struct Take {
   exporting::Skeletons skeletons;
   exporting::OpenFrames open;
-  bool has_samples = false;       ///< samples of gloves, for a table
+  bool has_samples = false;      ///< samples of gloves, for a table
+  exporting::McapOptions mcap{}; ///< data for a recording for ROS 2, as `commands`
+  std::vector<timeline::Event> commands{};
   std::vector<std::string> notes; ///< to be said once the file is written
 };
 
@@ -135,10 +150,11 @@ Result<std::unique_ptr<takes::FrameSource>> source_of(Result<std::unique_ptr<Fra
 
 /// Gloves without a loop: their hands can be shown, and no model.
 Result<Take> read_gloves(const Options& options, const std::string& format, Take take) {
-  if (!options.mesh.empty() || options.no_hands || !(format == "glb" || format == "bvh")) {
-    return Error{Errc::bad_input, options.file +
-                                      ": has only gloves, which .csv, .bvh and .glb can store; "
-                                      "shape a model with `nendo run --right replay:FILE`"};
+  if (!options.mesh.empty() || options.no_hands ||
+      !(format == "glb" || format == "bvh" || format == "mcap")) {
+    return Error{Errc::bad_input,
+                 options.file + ": has only gloves, which .csv, .bvh, .glb and .mcap can store; "
+                                "shape a model with `nendo run --right replay:FILE`"};
   }
   take.open = [path = options.file] { return source_of(takes::GloveFrames::open(path)); };
   return take;
@@ -153,6 +169,12 @@ Result<Take> read_recorded(const Options& options, const std::string& format) {
   if (take.has_samples) {
     take.notes = uncalibrated_notes(options, setup, "its angles are left out");
     return take;
+  }
+  if (format == "mcap") {
+    auto commands = takes::recorded_commands(options.file);
+    if (!commands) return commands.error();
+    take.commands = *std::move(commands);
+    take.mcap.begun_utc_ns = setup.begun.time_since_epoch().count();
   }
   for (const auto& hand : setup.hands)
     if (auto& skeleton = take.skeletons[flow::Placement::index_of(hand.side)]; !skeleton)
@@ -177,6 +199,7 @@ Result<Take> read_edited(const Options& options) {
   const auto timeline = timeline::read_timeline(options.file);
   if (!timeline) return timeline.error();
   Take take;
+  take.commands = timeline->events;
   for (const auto& hand : timeline->hands)
     take.skeletons[flow::Placement::index_of(hand.side)].emplace(hand.skeleton());
   take.open = [path = options.file, mesh = options.mesh] {
@@ -185,10 +208,10 @@ Result<Take> read_edited(const Options& options) {
   return take;
 }
 
-// Sets the rate unless it was asked for. A table is for plots, which want every frame.
+// Sets the rate unless it was asked for. Tables and recordings have every frame.
 void settle_rate(const Options& options, const std::string& format,
                  const takes::FrameSource& source, exporting::Choice& choice) {
-  if (choice.rate_hz || options.every_frame || format == "csv") return;
+  if (choice.rate_hz || options.every_frame || format == "csv" || format == "mcap") return;
   choice.rate_hz = format == "bvh" ? source.rate_hz() : exporting::animators_rate_hz;
 }
 
@@ -224,6 +247,11 @@ Result<exporting::Exported> export_take(const Take& take, const std::string& for
   if (!frames) return frames.error();
   if (format == "bvh")
     return counted_from(exporting::export_hands_bvh(*frames, take.skeletons, options.out));
+  if (format == "mcap") {
+    exporting::McapOptions mcap = take.mcap;
+    mcap.library = "Nendo " NENDO_VERSION;
+    return counted_from(exporting::export_mcap(*frames, take.commands, mcap, options.out));
+  }
   if (format == "csv") return counted_from(exporting::export_motion_csv(*frames, options.out));
   auto done = exporting::export_mesh_sequence(*frames, options.out);
   if (!done) return done;
@@ -340,11 +368,13 @@ Result<void> export_command(const Options& options) {
 void nendo::app::add_export(cli::Command& program) {
   using namespace export_command;
   cli::Command command = program.add_command(
-      "export", "Writes a recording as animation or tables: glTF, point caches, meshes, BVH, CSV");
+      "export",
+      "Writes a recording as animation, tables, or messages of ROS 2: glTF, point caches, "
+      "meshes, BVH, CSV, MCAP");
   Options& options = command.on_chosen<Options>(export_command::export_command);
   command.set_footer(
       "A recording of `nendo record` has hands and no model: .csv (every sample: counts, angles, "
-      "both\nclocks), .bvh and .glb.");
+      "both\nclocks), .bvh, .glb and .mcap.");
   command
       .add_option("TAKE", options.file,
                   "A recording of `nendo run` or `nendo record`, or a timeline of `nendo edit`")
@@ -353,14 +383,13 @@ void nendo::app::add_export(cli::Command& program) {
       .add_option("--out", options.out,
                   "Where to write: .glb (model and hands), .pc2 or .mdd (the model's vertices), "
                   "NAME-%04d.obj, .ply or .stl (one mesh per frame), .bvh (one file per hand), "
-                  ".csv (angles and "
-                  "fingertips)")
+                  ".csv (angles and fingertips), .mcap (hands for ROS 2 and Foxglove)")
       .required();
   command.add_option("--format", options.format, "Format, if the name's ending does not say it")
-      .one_of({"glb", "pc2", "mdd", "obj", "ply", "stl", "bvh", "csv"});
+      .one_of({"glb", "pc2", "mdd", "obj", "ply", "stl", "bvh", "csv", "mcap"});
   command.add_rate("--rate", options.rate_hz,
-                   "Frames per second, each the nearest of the take; without it, .csv has every "
-                   "frame at its own time, .bvh the take's rate, and other formats 24");
+                   "Frames per second, each the nearest of the take; without it, .csv and .mcap "
+                   "have every frame at its own time, .bvh the take's rate, and other formats 24");
   command.add_flag("--every-frame", options.every_frame,
                    ".glb: every frame of the take, at its own time");
   command.add_flag("--samples", options.samples,

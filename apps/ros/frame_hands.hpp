@@ -16,7 +16,8 @@ inline StagePose stage_pose(const Eigen::Isometry3d& pose) noexcept {
   return {pose.translation(), Eigen::Quaterniond(pose.linear())};
 }
 
-/// Returns the state of a hand that is present. Wait-free.
+/// Returns the state of a hand that is present. A hand without sensors is that of a timeline, whose
+/// keys define all angles, as if they were measured. Wait-free.
 inline HandState state_of(Side side, const flow::HandFrame& hand) noexcept {
   HandState state;
   state.side = side;
@@ -25,7 +26,8 @@ inline HandState state_of(Side side, const flow::HandFrame& hand) noexcept {
   state.forearm = stage_pose(hand.T_stage_wrist);
   const hand::AngleSources sources = hand::angle_sources(hand.sensors, hand.left_out);
   for (std::size_t at = 0; at < hand::angle_count; ++at) {
-    if (sources[at] == hand::AngleSource::measured) state.measured |= 1U << at;
+    if (hand.sensors == SensorMask{} || sources[at] == hand::AngleSource::measured)
+      state.measured |= 1U << at;
     state.angles_rad[at] = hand.angles[hand::angle_at(at)];
   }
   return state;
@@ -34,13 +36,14 @@ inline HandState state_of(Side side, const flow::HandFrame& hand) noexcept {
 /// The hands that are present in a frame, the left one first.
 class FrameHands {
 public:
+  FrameHands() = default;
   explicit FrameHands(const flow::Frame& frame) noexcept {
     for (const Side side : {Side::left, Side::right}) {
       const flow::HandFrame& hand = frame.hands[flow::Placement::index_of(side)];
       if (hand.present) hands_[count_++] = state_of(side, hand);
     }
   }
-  std::span<HandState> all() noexcept { return {hands_.data(), count_}; }
+  std::span<const HandState> all() const noexcept { return {hands_.data(), count_}; }
 
 private:
   std::array<HandState, 2> hands_;

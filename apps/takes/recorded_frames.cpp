@@ -219,6 +219,7 @@ GloveFrames::GloveFrames(recording::TakeReader reader)
 
 void GloveFrames::show(const flow::GloveHand& hand) noexcept {
   flow::HandFrame& shown = frame_.hands[hand.slot];
+  shown.sensors = hand.latest.present;
   shown.left_out = hand.left_out();
   shown.angles = hand.angles;
   shown.T_stage_wrist = hand.T_stage_wrist;

@@ -71,30 +71,6 @@ private:
   }
 };
 
-struct ValueText {
-  const flow::LoopSettings& settings;
-
-  template <class T>
-  std::string operator()(const flow::ChoiceSetting<T>& choice) const {
-    return std::string(choice.name_of(choice.of(settings)));
-  }
-  std::string operator()(const flow::SwitchSetting& on) const {
-    return on.of(settings) ? "true" : "false";
-  }
-  std::string operator()(const flow::NumberSetting& number) const {
-    return decimal_text(number.of(settings));
-  }
-  std::string operator()(const flow::FingersSetting& fingers) const {
-    std::string text;
-    for (const double length : fingers.of(settings))
-      text += (text.empty() ? "" : ",") + decimal_text(length);
-    return text;
-  }
-  std::string operator()(const flow::BrushesSetting& brushes) const {
-    return flow::in_words(brushes.of(settings));
-  }
-};
-
 /// Takes the value of one setting. Returns why it is refused; empty: it was taken.
 std::string take(std::string_view name, std::string_view value, NamedSettings& named) {
   std::string why;
@@ -227,15 +203,6 @@ Result<NamedSettings> parse_named_settings(std::string_view text) {
   if (!why.empty()) return Error{Errc::bad_input, why};
   if (auto checked = flow::check_ranges(named.values); !checked) return checked.error();
   return named;
-}
-
-std::string text_of(const flow::LoopSettings& settings) {
-  std::string text;
-  flow::for_each_setting([&](const auto& setting) {
-    text +=
-        (text.empty() ? "" : " ") + std::string(setting.name) + '=' + ValueText{settings}(setting);
-  });
-  return text;
 }
 
 Result<ClientCommand> parse_command(std::string_view text) {

@@ -1,6 +1,6 @@
 #pragma once
-// A strict parser for clients' commands, and conversions of settings to and from text
-// (PROTOCOL.md), by the descriptions in flow/setting.hpp. Also the command table and the settings
+// A strict parser for clients' commands and settings (PROTOCOL.md), by the descriptions in
+// flow/setting.hpp; commands/command_text.hpp writes both. Also the command table and the settings
 // for the page and other clients.
 
 #include <cstdint>
@@ -30,9 +30,6 @@ struct NamedSettings {
 /// Parses a text such as "mode=type2 radius_m=0.1,0.1,0.1,0.1,0.05", separated by single spaces.
 /// Allocates only for an error. Error: bad_input, naming the setting and its valid values.
 Result<NamedSettings> parse_named_settings(std::string_view text);
-
-/// Returns all settings as such a text. Allocates.
-std::string text_of(const flow::LoopSettings& settings);
 
 /// A command; or a row of the table, by its name, whose effect depends on the run
 /// (commands::press()); or changed settings.

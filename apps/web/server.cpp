@@ -8,6 +8,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include "commands/command_text.hpp"
 #include "web/server_work.hpp"
 #include "web/web_socket.hpp"
 #include "web/wire.hpp"
@@ -115,7 +116,7 @@ void Server::set_fact(std::size_t fact, std::vector<std::byte> message) {
 }
 
 void Server::set_settings(const flow::LoopSettings& settings) {
-  set_fact(settings_fact, text_message(MessageType::settings, text_of(settings)));
+  set_fact(settings_fact, text_message(MessageType::settings, commands::text_of(settings)));
 }
 
 void Server::set_commands(const commands::Situation& now) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "commands/command_text.hpp"
 #include "laws.hpp"
 #include "web/client_commands.hpp"
 #include "web/http_request.hpp"
@@ -60,7 +61,7 @@ void check_settings(const NamedSettings& named) {
   settings.radius_m.fill(1.0);
   named.apply_to(settings);
   require(settings.are_usable());
-  const auto again = parse_named_settings(text_of(settings));
+  const auto again = parse_named_settings(nendo::commands::text_of(settings));
   require(static_cast<bool>(again));
   nendo::flow::LoopSettings read;
   again->apply_to(read);

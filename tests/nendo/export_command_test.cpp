@@ -78,7 +78,7 @@ TEST_SUITE("export_command") {
     CHECK_FALSE(report.contains("rate_hz"));
     const test::Glb glb(contents(run.path("take.glb")));
     CHECK((glb.vertices(0, 1e6) - shape->vertices).colwise().norm().maxCoeff() < near);
-    for (const std::string out : {"a.pc2", "a.mdd", "hands.bvh", "a.csv", "a-%03d.obj"}) {
+    for (const std::string out : {"a.pc2", "a.mdd", "hands.bvh", "a.csv", "a.mcap", "a-%03d.obj"}) {
       const auto other = run.export_to(out);
       CAPTURE(other.err);
       CHECK(other.exit_code == 0);
@@ -97,7 +97,8 @@ TEST_SUITE("export_command") {
     const std::size_t input_log = damaged.find("TAPE");
     REQUIRE(input_log != std::string::npos);
     damaged[input_log + 40] = static_cast<char>(damaged[input_log + 40] ^ 1);
-    for (const std::string out : {"a.glb", "a.pc2", "a.mdd", "hands.bvh", "a.csv", "a-%03d.obj"}) {
+    for (const std::string out :
+         {"a.glb", "a.pc2", "a.mdd", "hands.bvh", "a.csv", "a.mcap", "a-%03d.obj"}) {
       CAPTURE(out);
       test::write_file(run.path("take.nendo"), whole);
       const auto exact = run.export_to(out);
@@ -359,6 +360,10 @@ TEST_SUITE("export_command") {
              {{"--out", "a.glb", "--tolerance", "2in"}, 2, "1mm"},
              {{"--out", "a.glb", "--tolerance", "0mm"}, 2, "--tolerance"},
              {{"--out", "a.pc2", "--every-frame"}, 2, "--every-frame"},
+             {{"--out", "a.mcap", "--no-hands"}, 2, "--no-hands"},
+             {{"--out", "a.mcap", "--tolerance", "1mm"}, 2, "--tolerance"},
+             {{"--out", "a.mcap", "--samples"}, 2, "--samples"},
+             {{"--out", "a.mcap", "--every-frame"}, 5, "a.nendo"},
              {{"--out", "a.glb", "--every-frame", "--rate", "24"}, 2, "--every-frame"},
              {{"--out", "a.csv", "--from", "1x"}, 2, "--from"},
              {{"--out", "a.glb", "--format", "fbx"}, 2, "fbx"}}) {

@@ -11,6 +11,8 @@
 #include "ros/types.hpp"
 #include "support/ros2msg.hpp"
 
+namespace cdr_test {
+
 using namespace nendo;
 
 namespace {
@@ -30,9 +32,9 @@ std::vector<std::byte> bytes_of(std::initializer_list<int> values) {
 }
 
 template <class Message>
-std::vector<tests::Ros2Schema::Leaf> read_back(const ros::MessageType& type,
-                                               const Message& message) {
-  return tests::Ros2Schema(std::string(type.name), ros::schema_of(type)).decode(encoded(message));
+std::vector<test::Ros2Schema::Leaf> read_back(const ros::MessageType& type,
+                                              const Message& message) {
+  return test::Ros2Schema(std::string(type.name), ros::schema_of(type)).decode(encoded(message));
 }
 
 } // namespace
@@ -119,3 +121,5 @@ TEST_CASE("transforms and poses are read back by their schemas") {
     CHECK(read[9 + 7 * at].number == poses.poses[at].orientation.w);
   }
 }
+
+} // namespace cdr_test

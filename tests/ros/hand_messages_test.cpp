@@ -14,6 +14,8 @@
 
 #include "ros/hand_messages.hpp"
 
+namespace hand_messages_test {
+
 using namespace nendo;
 
 namespace {
@@ -222,3 +224,5 @@ TEST_CASE("a time is the nearest that a stamp can hold") {
   CHECK(ros::time_of(std::numeric_limits<std::int64_t>::max()) ==
         ros::Time{2'147'483'647, 999'999'999});
 }
+
+} // namespace hand_messages_test

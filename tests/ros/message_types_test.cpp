@@ -8,6 +8,8 @@
 #include "support/ros2msg.hpp"
 #include "support/sha256.hpp"
 
+namespace message_types_test {
+
 using namespace nendo;
 
 namespace {
@@ -18,23 +20,23 @@ constexpr ros::MessageType all_types[] = {ros::string_type, ros::joint_state_typ
 } // namespace
 
 TEST_CASE("the SHA-256 of these tests is that of FIPS 180-4") {
-  CHECK(tests::sha256("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  CHECK(tests::sha256("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  CHECK(tests::sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") ==
+  CHECK(test::sha256("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  CHECK(test::sha256("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  CHECK(test::sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") ==
         "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
 }
 
 TEST_CASE("the hash of each type is that of its schema") {
   for (const ros::MessageType& type : all_types) {
     INFO(std::string(type.name));
-    CHECK(tests::Ros2Schema(std::string(type.name), ros::schema_of(type)).hash() == type.hash);
+    CHECK(test::Ros2Schema(std::string(type.name), ros::schema_of(type)).hash() == type.hash);
   }
 }
 
 TEST_CASE("another field gives another hash") {
   std::string schema = ros::schema_of(ros::joint_state_type);
   schema.replace(schema.find("effort"), 6, "torque");
-  CHECK(tests::Ros2Schema("sensor_msgs/msg/JointState", schema).hash() !=
+  CHECK(test::Ros2Schema("sensor_msgs/msg/JointState", schema).hash() !=
         ros::joint_state_type.hash);
 }
 
@@ -59,3 +61,5 @@ TEST_CASE("profiles are those of tf2_ros and of usual publishers") {
   CHECK(fixed.find("  depth: 1\n") != std::string::npos);
   CHECK(fixed.find("  durability: 1\n") != std::string::npos); // transient local
 }
+
+} // namespace message_types_test

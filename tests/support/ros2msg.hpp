@@ -15,7 +15,7 @@
 
 #include "support/sha256.hpp"
 
-namespace nendo::tests {
+namespace nendo::test {
 
 class Ros2Schema {
 public:
@@ -140,6 +140,8 @@ private:
       leaves.push_back({path, 0.0, cursor.text()});
     } else if (type == "float64") {
       leaves.push_back({path, cursor.number<double>()});
+    } else if (type == "uint8" || type == "bool") {
+      leaves.push_back({path, static_cast<double>(cursor.number<std::uint8_t>())});
     } else if (type == "int32") {
       leaves.push_back({path, static_cast<double>(cursor.number<std::int32_t>())});
     } else if (type == "uint32") {
@@ -153,4 +155,4 @@ private:
   std::map<std::string, std::vector<Field>> types_;
 };
 
-} // namespace nendo::tests
+} // namespace nendo::test

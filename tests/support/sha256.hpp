@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-namespace nendo::tests {
+namespace nendo::test {
 
 /// The first 32 bits of the fractions of the roots of the first primes.
 template <std::size_t count>
@@ -66,4 +66,4 @@ inline std::string sha256(std::string_view text) {
   return digits;
 }
 
-} // namespace nendo::tests
+} // namespace nendo::test

@@ -5,6 +5,7 @@
 
 #include <nendo/flow/setting.hpp>
 
+#include "commands/command_text.hpp"
 #include "web/client_commands.hpp"
 #include "web/web_socket.hpp"
 
@@ -118,13 +119,64 @@ TEST_SUITE("client_commands") {
                                       .brush_strength = -0.1 / 3,
                                       .keep_volume = 0.1 / 3,
                                       .hold = flow::Hold::hand};
-    const std::string text = "settings " + text_of(settings);
+    const std::string text = "settings " + commands::text_of(settings);
     CHECK(text.size() < max_client_message / 2);
     const auto asked = parse_command(text);
     REQUIRE(asked);
     flow::LoopSettings read;
     std::get<NamedSettings>(*asked).apply_to(read);
     CHECK(read == settings);
+  }
+
+  TEST_CASE("a command as a text is the message that asks for it") {
+    const flow::WristMove move{Side::left, {0.1 / 3, -2.0, 1e-7}, {0.5, 0.5, -0.5, 0.5}};
+    const flow::SetMask mask{flow::MaskEdit::hold, {0.1 / 3, -2.0, 1e-7}, 0.25};
+    const auto signal = puppet::HandSignal::named("left.index_flexion");
+    REQUIRE(signal);
+    for (const flow::Command& command : std::initializer_list<flow::Command>{
+             flow::Request::grab,
+             flow::Request::release,
+             flow::Request::commit,
+             flow::Request::undo,
+             flow::Request::redo,
+             flow::Request::reset,
+             flow::Request::regrab,
+             flow::Mark{},
+             flow::SaveShape{},
+             flow::Subdivide{},
+             flow::Refine{},
+             flow::ChangeTopology{},
+             flow::Recentre{},
+             flow::SetRecording{true},
+             flow::SetRecording{false},
+             flow::SetClutch{Side::left, 2, false},
+             flow::SetClutch{Side::right, puppet::RigPlayer::all_fingers, true},
+             flow::SetClutch{Side::right, puppet::HandSignal::no_finger, false},
+             flow::SetRole{3, *signal},
+             flow::SetSymmetry{true},
+             flow::SetSymmetry{false},
+             flow::DrawWire{true},
+             flow::DrawWire{false},
+             flow::DrawWire{true, flow::Blade::knife},
+             mask,
+             flow::SetMask{flow::MaskEdit::invert},
+             flow::EditPart{},
+             flow::EditPart{true},
+             move}) {
+      const std::string text = commands::text_of(command);
+      CAPTURE(text);
+      const auto asked = parse_command(text);
+      REQUIRE(asked);
+      const auto* const row = std::get_if<const commands::Row*>(&*asked);
+      const flow::Command made =
+          row != nullptr ? (*row)->make(false) : std::get<flow::Command>(*asked);
+      CHECK(made == command);
+    }
+    CHECK(commands::text_of(flow::ChangePuppet{7}) == "puppet 7");
+    CHECK(commands::text_of(flow::SetLayer{2, false}) == "layer 2 off");
+    CHECK(commands::text_of(flow::EditPart{true, 4}) == "remove part 4");
+    CHECK(commands::text_of(flow::ChangeModel{1, flow::ModelSource::cut}) == "cut");
+    CHECK(commands::text_of(flow::ChangeModel{1, flow::ModelSource::refined, 100}) == "refine");
   }
 
   TEST_CASE(

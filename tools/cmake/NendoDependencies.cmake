@@ -16,6 +16,8 @@ find_package(nlohmann_json 3.11 REQUIRED) # headers alone: programs that use the
 if(NENDO_APPS)
   find_package(CLI11 REQUIRED)
   find_package(PNG REQUIRED)
+  find_package(ZLIB REQUIRED)
+  pkg_check_modules(libzstd REQUIRED IMPORTED_TARGET libzstd)
   pkg_check_modules(libturbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
   find_path(NENDO_STB_INCLUDE stb/stb_image.h REQUIRED) # headers alone
   find_package(glfw3 3.3 QUIET)
