@@ -80,4 +80,28 @@ struct PoseArray {
   std::vector<Pose> poses;
 };
 
+/// diagnostic_msgs/msg/KeyValue
+struct KeyValue {
+  std::string key;
+  std::string value;
+};
+
+/// The levels of a DiagnosticStatus, which are bytes there.
+enum class DiagnosticLevel : std::uint8_t { ok = 0, warn = 1, error = 2, stale = 3 };
+
+/// diagnostic_msgs/msg/DiagnosticStatus
+struct DiagnosticStatus {
+  DiagnosticLevel level = DiagnosticLevel::ok;
+  std::string name;
+  std::string message;
+  std::string hardware_id;
+  std::vector<KeyValue> values;
+};
+
+/// diagnostic_msgs/msg/DiagnosticArray
+struct DiagnosticArray {
+  Header header;
+  std::vector<DiagnosticStatus> status;
+};
+
 } // namespace nendo::ros

@@ -31,6 +31,12 @@ constexpr std::array definitions{
                                                  "geometry_msgs/Transform transform\n"},
     Definition{"geometry_msgs/PoseArray", "std_msgs/Header header\ngeometry_msgs/Pose[] poses\n"},
     Definition{"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
+    Definition{"diagnostic_msgs/KeyValue", "string key\nstring value\n"},
+    Definition{"diagnostic_msgs/DiagnosticStatus", "byte level\nstring name\nstring message\n"
+                                                   "string hardware_id\n"
+                                                   "diagnostic_msgs/KeyValue[] values\n"},
+    Definition{"diagnostic_msgs/DiagnosticArray",
+               "std_msgs/Header header\ndiagnostic_msgs/DiagnosticStatus[] status\n"},
 };
 
 /// Returns null for a type of numbers or strings.

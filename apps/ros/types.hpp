@@ -29,6 +29,9 @@ inline constexpr MessageType tf_message_type{
 inline constexpr MessageType pose_array_type{
     "geometry_msgs/msg/PoseArray",
     "RIHS01_af0cc36d190e104d546d168d6b39df04fa4b4ccecf59cb4c9ed328d3d5004aa0"};
+inline constexpr MessageType diagnostic_array_type{
+    "diagnostic_msgs/msg/DiagnosticArray",
+    "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"};
 
 /// Returns the definition of a type in the encoding `ros2msg`: its fields, and then, after a line
 /// of 80 `=` and one with the name, those of each type that it contains. `type` must be one of the
@@ -61,5 +64,7 @@ inline constexpr Topic commands_topic{"/nendo/commands", string_type, {}};
 constexpr Topic joints_topic(Side side) noexcept {
   return {side == Side::left ? "/nendo/left/joints" : "/nendo/right/joints", pose_array_type, {}};
 }
+/// The states of gloves and trackers, where ROS 2 expects those of all devices.
+inline constexpr Topic diagnostics_topic{"/diagnostics", diagnostic_array_type, {}};
 
 } // namespace nendo::ros

@@ -15,7 +15,8 @@ using namespace nendo;
 namespace {
 
 constexpr ros::MessageType all_types[] = {ros::string_type, ros::joint_state_type,
-                                          ros::tf_message_type, ros::pose_array_type};
+                                          ros::tf_message_type, ros::pose_array_type,
+                                          ros::diagnostic_array_type};
 
 } // namespace
 

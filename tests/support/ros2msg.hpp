@@ -109,7 +109,7 @@ private:
   }
   std::string description_of(const std::string& type) const {
     static const std::map<std::string, int> ids{
-        {"int32", 6}, {"uint32", 7}, {"float64", 11}, {"string", 17}};
+        {"int32", 6}, {"uint32", 7}, {"float64", 11}, {"byte", 16}, {"string", 17}};
     std::string fields;
     for (const Field& field : types_.at(type)) {
       const bool nested = !is_primitive(field.type);
