@@ -88,4 +88,8 @@ TEST_SUITE("proofs") {
   TEST_CASE("the offer of a job keeps its laws, and needs every order that it states") {
     prove("job_offer.hpp", job_offer_scenarios());
   }
+
+  TEST_CASE("shared slots keep their laws, and need every order that they state") {
+    prove("shared_slots.hpp", shared_slots_scenarios());
+  }
 }

@@ -5,6 +5,7 @@
 
 #include <nendo/base/job_offer.hpp>
 #include <nendo/base/seq_lock.hpp>
+#include <nendo/base/shared_slots.hpp>
 #include <nendo/base/spsc_ring.hpp>
 #include <nendo/base/triple_buffer.hpp>
 
@@ -186,6 +187,31 @@ struct HandOver {
   }
 };
 
+/// A writer replaces a value, and destroys those that no reader uses: it sets them to 0.
+struct Replaced {
+  SharedSlots<Value, 2, Explored> slots;
+  Value last = 0;     ///< the writer's
+  Value replaced = 0; ///< how often there was a free slot
+
+  void replace(Value number) {
+    const std::size_t other = 1 - slots.newest();
+    if (!slots.is_free(other)) return;
+    slots.at(other) = 0;
+    slots.at(other) = number;
+    slots.publish(other);
+    last = number;
+    ++replaced;
+  }
+  void read(Value& previous) {
+    const std::size_t slot = slots.acquire();
+    const Value value = slots[slot];
+    require(value >= previous, "values never go back");
+    require(value == 0 || value > 10, "no reader sees a value that was destroyed");
+    slots.release(slot);
+    previous = value;
+  }
+};
+
 } // namespace
 
 std::vector<Scenario> spsc_ring_scenarios() {
@@ -309,6 +335,32 @@ std::vector<Scenario> job_offer_scenarios() {
                                  shared->tick();
                              }},
                             [=] { shared->check(); }};
+           }}};
+}
+
+std::vector<Scenario> shared_slots_scenarios() {
+  return {{"three values in two slots, two readers", [] {
+             const auto shared = std::make_shared<Replaced>();
+             const auto reader = [=](int reads) {
+               return [=] {
+                 Value previous = 0;
+                 for (int n = 0; n < reads; ++n)
+                   shared->read(previous);
+               };
+             };
+             return Program{{[=] {
+                               for (Value number = 11; number <= 13; ++number)
+                                 shared->replace(number);
+                             },
+                             reader(2), reader(1)},
+                            [=] {
+                              require(shared->replaced > 0, "an unused slot is free");
+                              require(shared->slots.is_free(1 - shared->slots.newest()),
+                                      "at rest the other slot is free");
+                              Value previous = 0;
+                              shared->read(previous);
+                              require(previous == shared->last, "at rest the newest is there");
+                            }};
            }}};
 }
 

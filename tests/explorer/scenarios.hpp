@@ -19,5 +19,6 @@ std::vector<Scenario> spsc_ring_scenarios();
 std::vector<Scenario> triple_buffer_scenarios();
 std::vector<Scenario> seq_lock_scenarios();
 std::vector<Scenario> job_offer_scenarios();
+std::vector<Scenario> shared_slots_scenarios();
 
 } // namespace nendo::explorer
