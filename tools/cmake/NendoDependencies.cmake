@@ -36,9 +36,14 @@ if(NENDO_PYTHON)
   find_package(Python 3.9 REQUIRED COMPONENTS Interpreter Development.Module) # before pybind11, which then uses it
   find_package(pybind11 2.10 REQUIRED CONFIG)
 endif()
+if(NENDO_TESTS OR NENDO_OPENXR)
+  find_path(NENDO_OPENXR_INCLUDE openxr/openxr.h REQUIRED) # headers alone: the loader loads the layer, and not the other way round
+endif()
 if(NENDO_TESTS)
   find_package(doctest REQUIRED)
-  find_path(NENDO_OPENXR_INCLUDE openxr/openxr.h REQUIRED) # the header alone: nothing is linked, nothing runs
+  if(NENDO_OPENXR)
+    pkg_check_modules(openxr REQUIRED IMPORTED_TARGET openxr) # the loader, for the test's application
+  endif()
   if(NOT CMAKE_CROSSCOMPILING) # it is loaded before a program's own libraries, also in the emulator that would run it
     pkg_check_modules(umockdev REQUIRED IMPORTED_TARGET umockdev-1.0)
   endif()
