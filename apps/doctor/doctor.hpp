@@ -68,4 +68,24 @@ std::vector<Finding> diagnose_machine(const MachineFacts& facts);
 /// Examines this machine now.
 Examination check_machine();
 
+/// A manifest of Nendo's layer in a folder of OpenXR's loader.
+struct LayerManifest {
+  std::filesystem::path path;
+  std::string problem; ///< why the loader cannot load the layer; empty: it can
+};
+/// The facts that the checks of nendo-openxr use.
+struct OpenXrFacts {
+  std::vector<LayerManifest> manifests;
+  std::optional<std::string> segment; ///< NENDO_XR
+  bool is_disabled = false;           ///< DISABLE_NENDO_XR is set
+};
+
+/// Reads the manifests in `folders`, loads the libraries that those of Nendo's layer name, and
+/// reads the environment. Blocks briefly.
+OpenXrFacts read_openxr(const std::vector<std::filesystem::path>& folders);
+/// Returns all findings about the layer. Pure.
+std::vector<Finding> diagnose_openxr(const OpenXrFacts& facts);
+/// Examines the folders in which OpenXR's loader looks.
+Examination check_openxr();
+
 } // namespace nendo::doctor

@@ -82,7 +82,8 @@ doctor::Examination check_known_gloves() {
 }
 
 /// The checks, one function for each subject.
-constexpr std::array subjects{doctor::check_ports, doctor::check_machine, check_calibrations};
+constexpr std::array subjects{doctor::check_ports, doctor::check_machine, doctor::check_openxr,
+                              check_calibrations};
 
 std::string_view name_of(doctor::Severity severity) {
   return severity == doctor::Severity::failure ? "failure" : "warning";
