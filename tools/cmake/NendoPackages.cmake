@@ -1,7 +1,7 @@
 # Debian packages, split as Debian does: the program, the libraries (named by their soname, so that two versions can be
 # installed beside each other), what one builds programs with, the udev rules, which are no version's and therefore
-# a package of their own, nendo-markers, which needs OpenCV, nendo-ros2, which needs DDS, and the module for Python, which needs
-# one version of it.
+# a package of their own, nendo-markers, which needs OpenCV, nendo-ros2, which needs DDS, nendo-openxr, which OpenXR's loader finds
+# once it is installed, and the module for Python, which needs one version of it.
 # tools/package builds and checks them.
 set(NENDO_SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(library_package libnendo${NENDO_SOVERSION})
@@ -22,6 +22,9 @@ if(NENDO_MARKERS)
 endif()
 if(NENDO_ROS2)
   list(APPEND CPACK_COMPONENTS_ALL ros2)
+endif()
+if(NENDO_OPENXR)
+  list(APPEND CPACK_COMPONENTS_ALL openxr)
 endif()
 if(NENDO_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
@@ -70,6 +73,11 @@ if(NENDO_ROS2)
     "This package has nendo-ros2, which publishes the hands of a run of nendo to
 programs of ROS 2, through DDS. ROS need not be installed.")
 endif()
+if(NENDO_OPENXR)
+  nendo_package(openxr nendo-openxr science "data gloves that shape 3-D models - hands for OpenXR's applications"
+    "This package has an API layer for OpenXR, by which any application that asks
+for XR_EXT_hand_tracking gets the hands of a run of nendo.")
+endif()
 if(NENDO_PYTHON)
   nendo_package(python python3-nendo python "data gloves that shape 3-D models - Python module"
     "This package has the module nendo, with which Python reads gloves, poses
@@ -91,6 +99,8 @@ set(CPACK_DEBIAN_MARKERS_PACKAGE_RECOMMENDS nendo)
 set(CPACK_DEBIAN_ROS2_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_ROS2_PACKAGE_DEPENDS "${library_package} ${same}")
 set(CPACK_DEBIAN_ROS2_PACKAGE_RECOMMENDS nendo)
+set(CPACK_DEBIAN_OPENXR_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_OPENXR_PACKAGE_RECOMMENDS "nendo, libopenxr-loader1")
 if(NENDO_PYTHON)
   math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
