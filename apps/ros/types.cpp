@@ -30,6 +30,56 @@ constexpr std::array definitions{
     Definition{"geometry_msgs/TransformStamped", "std_msgs/Header header\nstring child_frame_id\n"
                                                  "geometry_msgs/Transform transform\n"},
     Definition{"geometry_msgs/PoseArray", "std_msgs/Header header\ngeometry_msgs/Pose[] poses\n"},
+    Definition{"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},
+    Definition{"foxglove_msgs/SceneUpdate", "foxglove_msgs/SceneEntityDeletion[] deletions\n"
+                                            "foxglove_msgs/SceneEntity[] entities\n"},
+    Definition{"foxglove_msgs/SceneEntityDeletion", "builtin_interfaces/Time timestamp\n"
+                                                    "uint8 type\nstring id\n"},
+    Definition{"foxglove_msgs/SceneEntity", "builtin_interfaces/Time timestamp\nstring frame_id\n"
+                                            "string id\nbuiltin_interfaces/Duration lifetime\n"
+                                            "bool frame_locked\n"
+                                            "foxglove_msgs/KeyValuePair[] metadata\n"
+                                            "foxglove_msgs/ArrowPrimitive[] arrows\n"
+                                            "foxglove_msgs/CubePrimitive[] cubes\n"
+                                            "foxglove_msgs/SpherePrimitive[] spheres\n"
+                                            "foxglove_msgs/CylinderPrimitive[] cylinders\n"
+                                            "foxglove_msgs/LinePrimitive[] lines\n"
+                                            "foxglove_msgs/TriangleListPrimitive[] triangles\n"
+                                            "foxglove_msgs/TextPrimitive[] texts\n"
+                                            "foxglove_msgs/ModelPrimitive[] models\n"},
+    Definition{"foxglove_msgs/KeyValuePair", "string key\nstring value\n"},
+    Definition{"foxglove_msgs/Color", "float64 r\nfloat64 g\nfloat64 b\nfloat64 a\n"},
+    Definition{"foxglove_msgs/ArrowPrimitive",
+               "geometry_msgs/Pose pose\nfloat64 shaft_length\n"
+               "float64 shaft_diameter\nfloat64 head_length\n"
+               "float64 head_diameter\nfoxglove_msgs/Color color\n"},
+    Definition{"foxglove_msgs/CubePrimitive",
+               "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 size\n"
+               "foxglove_msgs/Color color\n"},
+    Definition{"foxglove_msgs/SpherePrimitive", "geometry_msgs/Pose pose\n"
+                                                "geometry_msgs/Vector3 size\n"
+                                                "foxglove_msgs/Color color\n"},
+    Definition{"foxglove_msgs/CylinderPrimitive",
+               "geometry_msgs/Pose pose\n"
+               "geometry_msgs/Vector3 size\nfloat64 bottom_scale\n"
+               "float64 top_scale\nfoxglove_msgs/Color color\n"},
+    Definition{"foxglove_msgs/LinePrimitive", "uint8 type\ngeometry_msgs/Pose pose\n"
+                                              "float64 thickness\nbool scale_invariant\n"
+                                              "geometry_msgs/Point[] points\n"
+                                              "foxglove_msgs/Color color\n"
+                                              "foxglove_msgs/Color[] colors\nuint32[] indices\n"},
+    Definition{"foxglove_msgs/TriangleListPrimitive", "geometry_msgs/Pose pose\n"
+                                                      "geometry_msgs/Point[] points\n"
+                                                      "foxglove_msgs/Color color\n"
+                                                      "foxglove_msgs/Color[] colors\n"
+                                                      "uint32[] indices\n"},
+    Definition{"foxglove_msgs/TextPrimitive", "geometry_msgs/Pose pose\nbool billboard\n"
+                                              "float64 font_size\nbool scale_invariant\n"
+                                              "foxglove_msgs/Color color\nstring text\n"},
+    Definition{"foxglove_msgs/ModelPrimitive",
+               "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\n"
+               "foxglove_msgs/Color color\nbool override_color\n"
+               "string url\nstring media_type\nuint8[] data\n"},
     Definition{"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
     Definition{"diagnostic_msgs/KeyValue", "string key\nstring value\n"},
     Definition{"diagnostic_msgs/DiagnosticStatus", "byte level\nstring name\nstring message\n"

@@ -116,6 +116,7 @@ Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoi
   auto server = web::Server::open(*where);
   if (!server) return server.error();
   cli::note("open in a browser: " + (*server)->url());
+  cli::note("or in Foxglove or Lichtblick: " + (*server)->foxglove_url());
   const std::string& address = (*server)->endpoint().address;
   if (address == "0.0.0.0" || address == "::")
     cli::note("on another machine, replace " + address +

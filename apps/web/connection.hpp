@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <nendo/base/unique_fd.hpp>
 #include <nendo/base/units.hpp>
 
+#include "web/foxglove_feed.hpp"
 #include "web/frame_stream.hpp"
 #include "web/web_socket.hpp"
 
@@ -50,6 +52,10 @@ public:
 
   int fd() const noexcept { return socket_.get(); }
   Stage stage() const noexcept { return stage_; }
+  /// Return whether it is a WebSocket of a page, or of an application that uses Foxglove's
+  /// protocol.
+  bool is_page() const noexcept { return stage_ == Stage::socket && !foxglove; }
+  bool is_foxglove() const noexcept { return stage_ == Stage::socket && foxglove; }
   short events() const noexcept; ///< the events for poll()
   /// Appends received bytes to incoming(), up to its capacity. Returns false if the connection has
   /// ended. A client that has shut down its sending side may still get an answer.
@@ -82,7 +88,8 @@ public:
 
   ClientReader reader;
   Feed feed;
-  Facts sent_facts; ///< the last sent messages
+  std::optional<FoxgloveFeed> foxglove; ///< set before upgrade()
+  Facts sent_facts;                     ///< the last sent messages
 
 private:
   struct Part {

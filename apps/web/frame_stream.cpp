@@ -43,8 +43,8 @@ FrameStream::FrameStream(const deform::BlockLayout& layout, const flow::FrameCap
                sizeof(Chunk) - 1) /
                   sizeof(Chunk) * sizeof(Chunk),
               std::byte{1}),
-      ring_(std::max(min_chunks, min_records * (record_.size() / sizeof(Chunk)))),
-      shape_copy_(rest_) {
+      ring_(std::max(min_chunks, min_records * (record_.size() / sizeof(Chunk)))), base_(rest_),
+      drawn_(rest_) {
   // Touches all pages of the ring, so that no tick waits for one.
   for (std::size_t at = ring_.claim(ring_.capacity()); at > 0; --at)
     ring_.claimed(at - 1) = Chunk{};
@@ -61,15 +61,23 @@ void FrameStream::show(const flow::Frame& frame) noexcept {
   // In both cases this frame's shape is the rest shape from now on: a commit makes it so, as does a
   // change of settings, and after an undo the hands have not moved it yet.
   if (jumped || committed) rest_.follow(frame.shape);
-  copy_shape(frame); // before the record is pushed: see take_shape()
+  // Before the record is pushed: see take_shape().
+  copy_if_asked(base_, is_type1(frame) ? rest_ : frame.shape, frame);
+  copy_if_asked(drawn_, frame.shape, frame);
+  if (hands_active_.load(std::memory_order_relaxed)) {
+    hands_.back() = {ros::FrameHands(frame), frame.woke};
+    hands_.publish();
+  }
   if (active_.load(std::memory_order_relaxed)) push(frame, jumped, committed);
 }
 
-void FrameStream::copy_shape(const flow::Frame& frame) noexcept {
-  if (request_.load(std::memory_order_acquire) != ShapeRequest::pending) return;
-  shape_copy_.follow(is_type1(frame) ? rest_ : frame.shape);
-  shape_copy_number_ = number_;
-  request_.store(ShapeRequest::ready, std::memory_order_release);
+void FrameStream::copy_if_asked(ShapeCopy& copy, const deform::BlockShape& shape,
+                                const flow::Frame& frame) noexcept {
+  if (copy.request.load(std::memory_order_acquire) != ShapeRequest::pending) return;
+  copy.shape.follow(shape);
+  copy.number = number_;
+  copy.woke = frame.woke;
+  copy.request.store(ShapeRequest::ready, std::memory_order_release);
 }
 
 // Errors of many steps have either sign, so their squares add up.
@@ -140,26 +148,46 @@ void FrameStream::take(std::vector<Record>& records) {
   });
 }
 
-void FrameStream::request_shape() noexcept {
+void FrameStream::request(ShapeCopy& copy) noexcept {
   ShapeRequest none = ShapeRequest::none;
-  request_.compare_exchange_strong(none, ShapeRequest::pending, std::memory_order_release,
-                                   std::memory_order_relaxed);
+  copy.request.compare_exchange_strong(none, ShapeRequest::pending, std::memory_order_release,
+                                       std::memory_order_relaxed);
+}
+
+void FrameStream::request_shape() noexcept {
+  request(base_);
+}
+
+void FrameStream::request_drawn() noexcept {
+  request(drawn_);
+}
+
+std::optional<HostTime> FrameStream::take_drawn(std::vector<float>& xyz) {
+  if (drawn_.request.load(std::memory_order_acquire) != ShapeRequest::ready) return std::nullopt;
+  xyz.resize(3 * vertices_);
+  for (std::size_t at = 0; at < vertices_; ++at) {
+    const auto vertex = deform::vertex_at(drawn_.shape, at);
+    std::copy(vertex.begin(), vertex.end(), &xyz[3 * at]);
+  }
+  const HostTime woke = drawn_.woke;
+  drawn_.request.store(ShapeRequest::none, std::memory_order_release);
+  return woke;
 }
 
 // The tick copies a frame's shape before it pushes that frame's record. So a shape that becomes
 // ready after take() is of a later frame than all records that take() returned, and no record
 // after it is missed.
 std::optional<FrameStream::Shape> FrameStream::take_shape() {
-  if (request_.load(std::memory_order_acquire) != ShapeRequest::ready) return std::nullopt;
-  Shape shape{shape_copy_number_, std::vector<std::byte>(sizeof(ShapeHead) + 12 * vertices_)};
+  if (base_.request.load(std::memory_order_acquire) != ShapeRequest::ready) return std::nullopt;
+  Shape shape{base_.number, std::vector<std::byte>(sizeof(ShapeHead) + 12 * vertices_)};
   ShapeHead head;
   head.vertices = static_cast<std::uint32_t>(vertices_);
-  head.number = shape_copy_number_;
+  head.number = base_.number;
   WireWriter out(shape.message);
   out.put(head);
   for (std::size_t at = 0; at < vertices_; ++at)
-    out.put(deform::vertex_at(shape_copy_, at));
-  request_.store(ShapeRequest::none, std::memory_order_release);
+    out.put(deform::vertex_at(base_.shape, at));
+  base_.request.store(ShapeRequest::none, std::memory_order_release);
   return shape;
 }
 

@@ -11,8 +11,11 @@
 #include <vector>
 
 #include <nendo/base/spsc_ring.hpp>
+#include <nendo/base/triple_buffer.hpp>
 #include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/flow/frame.hpp>
+
+#include "ros/frame_hands.hpp"
 
 namespace nendo::web {
 
@@ -61,6 +64,23 @@ public:
   /// Returns the requested shape, or nothing if it is not ready. Call it after take(). Allocates;
   /// does not block.
   std::optional<Shape> take_shape();
+  /// Switches on or off that show() passes on the hands. Wait-free.
+  void set_hands_active(bool active) noexcept {
+    hands_active_.store(active, std::memory_order_relaxed);
+  }
+  struct Hands {
+    ros::FrameHands present;
+    HostTime woke{}; ///< Frame::woke
+  };
+  /// Returns the newest hands, which are valid until the next call; null if there were none since
+  /// the last one. Wait-free.
+  const Hands* take_hands() noexcept { return hands_.update() ? &hands_.front() : nullptr; }
+  /// Requests a copy of the next frame's shape as it is drawn. Has no effect while a request is
+  /// pending. Wait-free.
+  void request_drawn() noexcept;
+  /// Writes the drawn shape to `xyz`, as in a shape message, and returns its Frame::woke; nothing
+  /// if it is not ready. Allocates; does not block.
+  std::optional<HostTime> take_drawn(std::vector<float>& xyz);
   /// Returns the number of frames that the full ring refused. Thread-safe.
   std::uint64_t lost() const noexcept { return ring_.counters().refused; }
 
@@ -71,7 +91,18 @@ private:
   struct RecordHead;
   enum class ShapeRequest : std::uint8_t { none, pending, ready };
 
-  void copy_shape(const flow::Frame& frame) noexcept;
+  /// A copy of a shape for the other thread.
+  struct ShapeCopy {
+    explicit ShapeCopy(const deform::BlockShape& initial) : shape(initial) {}
+    std::atomic<ShapeRequest> request{ShapeRequest::none};
+    deform::BlockShape shape; ///< the tick's while pending, the other thread's while ready
+    std::uint64_t number = 0;
+    HostTime woke{};
+  };
+
+  static void request(ShapeCopy& copy) noexcept;
+  void copy_if_asked(ShapeCopy& copy, const deform::BlockShape& shape,
+                     const flow::Frame& frame) noexcept;
   void push(const flow::Frame& frame, bool jumped, bool committed) noexcept;
   double drift_of(const flow::Frame& frame) const noexcept;
 
@@ -89,9 +120,10 @@ private:
   // Shared.
   SpscRing<Chunk> ring_;
   std::atomic<bool> active_{false};
-  std::atomic<ShapeRequest> request_{ShapeRequest::none};
-  deform::BlockShape shape_copy_; ///< the tick's while pending, the other thread's while ready
-  std::uint64_t shape_copy_number_ = 0;
+  ShapeCopy base_;  ///< the shape to which the next steps apply
+  ShapeCopy drawn_; ///< the shape of a frame
+  std::atomic<bool> hands_active_{false};
+  TripleBuffer<Hands> hands_{Hands{}};
   // Used by the other thread only.
   std::uint64_t taken_ = 0;
   std::vector<std::byte> incoming_;

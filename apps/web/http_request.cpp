@@ -6,6 +6,7 @@
 #include <nendo/base/text.hpp>
 
 #include "web/endpoint.hpp"
+#include "web/foxglove_words.hpp"
 #include "web/web_socket.hpp"
 
 namespace nendo::web {
@@ -109,6 +110,18 @@ Admission admit_socket(const HttpRequest& request) noexcept {
   return {200, Resource::socket, {}};
 }
 
+Admission admit_foxglove(const HttpRequest& request) noexcept {
+  Admission admission = admit_socket(request);
+  if (admission.status != 200) return admission;
+  admission.resource = Resource::foxglove;
+  for (const std::string_view protocol : foxglove_protocols) {
+    if (!request.lists("Sec-WebSocket-Protocol", protocol)) continue;
+    admission.protocol = protocol;
+    return admission;
+  }
+  return refuse(400, "the subprotocol is foxglove.sdk.v1 or foxglove.websocket.v1");
+}
+
 } // namespace
 
 std::size_t HttpRequest::count(std::string_view name) const noexcept {
@@ -167,15 +180,18 @@ Admission admit(const HttpRequest& request, std::string_view token) noexcept {
   if (!is_address_or_localhost(*host))
     return refuse(403, "use the machine's address in figures, or localhost, not a name");
   const auto origin = request.header("Origin");
-  if (request.count("Origin") > 0 && !(origin && is_same_origin(*origin, *host)))
+  const bool is_foxglove = request.path == "/foxglove";
+  if (!is_foxglove && request.count("Origin") > 0 && !(origin && is_same_origin(*origin, *host)))
     return refuse(403, "this is no other page's to use");
   if (request.path == "/") return {200, Resource::page, {}};
-  if (request.path != "/model" && request.path != "/picture" && request.path != "/ws")
+  if (request.path != "/model" && request.path != "/picture" && request.path != "/ws" &&
+      !is_foxglove)
     return refuse(404, "nothing of that name");
   const auto given = request.parameter("token");
   if (!given || !equal_in_constant_time(*given, token))
     return refuse(403, "the token is another one: use the whole address that nendo printed");
   if (request.path == "/ws") return admit_socket(request);
+  if (is_foxglove) return admit_foxglove(request);
   return {200, request.path == "/model" ? Resource::model : Resource::picture, {}};
 }
 

@@ -41,17 +41,20 @@ struct HttpHead {
 /// Parses the head of a request. `bytes` must be all bytes that the client has sent so far.
 HttpHead parse_head(std::string_view bytes);
 
-enum class Resource { page, model, picture, socket };
+enum class Resource { page, model, picture, socket, foxglove };
 
 struct Admission {
   int status = 200; ///< 200 if granted, otherwise the status of the refusal
   Resource resource = Resource::page;
-  std::string_view why; ///< the reason of a refusal, in one line for the user
+  std::string_view why;        ///< the reason of a refusal, in one line for the user
+  std::string_view protocol{}; ///< the chosen subprotocol of Resource::foxglove
 };
 
 /// Grants or refuses a request. Host must be a numeric address or localhost, against DNS rebinding.
-/// Origin, if given, must be the same host. All resources except the page need `?token=`. A
-/// WebSocket request must conform to RFC 6455, section 4.2.1.
+/// Origin, if given, must be the same host; but for Foxglove it may be any, because its application
+/// is a page of another site, and the token is secret. All resources except the page need
+/// `?token=`. A WebSocket request must conform to RFC 6455, section 4.2.1, and one for Foxglove
+/// must offer one of foxglove_protocols.
 Admission admit(const HttpRequest& request, std::string_view token) noexcept;
 
 /// Compares two strings in a time that depends only on their lengths.

@@ -58,6 +58,10 @@ std::string Server::url() const {
   return "http://" + work_->endpoint.authority() + "/#" + work_->token;
 }
 
+std::string Server::foxglove_url() const {
+  return "ws://" + work_->endpoint.authority() + "/foxglove?token=" + work_->token;
+}
+
 void Server::present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model,
                      Pictures pictures) {
   Work::Inbox& inbox = work_->inbox;
@@ -172,6 +176,11 @@ void Server::Work::report(std::string message) {
   wake();
 }
 
+bool Server::Work::has_pages() const noexcept {
+  return std::ranges::any_of(connections_,
+                             [](const Connection& connection) { return connection.is_page(); });
+}
+
 std::size_t Server::Work::clients() const noexcept {
   return static_cast<std::size_t>(
       std::count_if(connections_.begin(), connections_.end(), [](const Connection& connection) {
@@ -196,7 +205,7 @@ void Server::Work::run() {
     }
     drop_expired(now);
     counts.clients = clients();
-    if (presented_.stream) presented_.stream->set_active(counts.clients > 0);
+    if (presented_.stream) presented_.stream->set_active(has_pages());
   }
   end();
 }
@@ -205,7 +214,10 @@ void Server::Work::run() {
 void Server::Work::end() {
   const HostTime now = HostClock::now();
   send_frames(now);
-  if (presented_.stream) presented_.stream->set_active(false);
+  if (presented_.stream) {
+    presented_.stream->set_active(false);
+    presented_.stream->set_hands_active(false);
+  }
   for (Connection& connection : connections_)
     if (connection.stage() == Connection::Stage::socket)
       connection.close(CloseCode::going_away, now);
@@ -236,8 +248,12 @@ void Server::Work::take_presented() {
     next = std::exchange(inbox.next, std::nullopt);
   }
   if (!next) return;
-  if (presented_.stream) presented_.stream->set_active(false);
+  if (presented_.stream) {
+    presented_.stream->set_active(false);
+    presented_.stream->set_hands_active(false);
+  }
   presented_ = *std::move(next);
+  begin_foxglove(HostClock::now());
   for (Connection& connection : connections_)
     if (connection.stage() == Connection::Stage::socket)
       connection.close(CloseCode::service_restart, HostClock::now());
@@ -253,7 +269,7 @@ void Server::Work::send_report(HostTime now) {
   if (text.empty()) return;
   const SharedBytes message = shared_message(text_message(MessageType::report, text));
   for (Connection& client : connections_)
-    if (client.stage() == Connection::Stage::socket && client.accepts_updates())
+    if (client.is_page() && client.accepts_updates())
       client.send(Opcode::binary, message, false, now);
 }
 
@@ -266,7 +282,7 @@ void Server::Work::send_facts(HostTime now) {
     facts = inbox.facts;
   }
   for (Connection& client : connections_) {
-    if (client.stage() != Connection::Stage::socket) continue;
+    if (!client.is_page()) continue;
     for (std::size_t at = 0; at < facts.size(); ++at) {
       if (!facts[at] || client.sent_facts[at] == facts[at]) continue;
       client.sent_facts[at] = facts[at];
@@ -317,13 +333,15 @@ void Server::Work::send_frames(HostTime now) {
   }
   bool shape_wanted = false;
   for (Connection& client : connections_) {
-    if (client.stage() != Connection::Stage::socket) continue;
+    if (!client.is_page()) continue;
     send_frames(client, shape, bytes, now);
     client.keep_alive(now);
     shape_wanted = shape_wanted || (client.feed.wants_shape() && client.accepts_updates() &&
                                     !client.has_queued_shape());
   }
   if (shape_wanted) presented_.stream->request_shape();
+  make_foxglove(now);
+  send_foxglove(now);
 }
 
 // They are no longer than a shape or two, and count as one.

@@ -1,6 +1,7 @@
 #pragma once
 // An HTTP server. It sends one page to browsers, and the frames of a running loop over WebSockets
-// to clients with the token (PROTOCOL.md). One thread owns all sockets, which are non-blocking.
+// to clients with the token (PROTOCOL.md), among them applications that use Foxglove's protocol
+// (FOXGLOVE.md). One thread owns all sockets, which are non-blocking.
 
 #include <chrono>
 #include <cstddef>
@@ -75,6 +76,8 @@ public:
   const std::string& token() const noexcept;
   /// Returns the address for a browser. The token is in the fragment, which browsers do not send.
   std::string url() const;
+  /// Returns the address for Foxglove and Lichtblick, with the token.
+  std::string foxglove_url() const;
 
   // The following functions, except next_command(), are thread-safe. They do not wait for the
   // network.

@@ -116,7 +116,7 @@ void Server::Work::read_head(Connection& connection, HostTime now) {
   } else if (admission.resource == Resource::picture) {
     send_picture(connection, head.request, now);
   } else {
-    open_socket(connection, head.request, now);
+    open_socket(connection, head.request, admission, now);
     connection.incoming().erase(0, head.bytes);
   }
 }
@@ -132,16 +132,23 @@ void Server::Work::send_picture(Connection& connection, const HttpRequest& reque
   connection.answer(answer_head(200, type, picture.size()) + "\r\n", shared_bytes(picture), now);
 }
 
-void Server::Work::open_socket(Connection& connection, const HttpRequest& request, HostTime now) {
+void Server::Work::open_socket(Connection& connection, const HttpRequest& request,
+                               const Admission& admission, HostTime now) {
   if (clients() >= limits_.max_clients) {
     refuse(connection, 503, "so many look already that there is no place", now);
     return;
   }
-  connection.upgrade(
+  const bool is_foxglove = admission.resource == Resource::foxglove;
+  std::string head =
       "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
       "Sec-WebSocket-Accept: " +
-          accept_of(*request.header("Sec-WebSocket-Key")) + "\r\n\r\n",
-      now);
+      accept_of(*request.header("Sec-WebSocket-Key")) + "\r\n";
+  if (is_foxglove) {
+    connection.foxglove.emplace();
+    head.append("Sec-WebSocket-Protocol: ").append(admission.protocol).append("\r\n");
+  }
+  connection.upgrade(head + "\r\n", now);
+  if (is_foxglove) greet_foxglove(connection, now);
 }
 
 void Server::Work::read_socket(Connection& connection, HostTime now) {
@@ -161,6 +168,10 @@ void Server::Work::read_socket(Connection& connection, HostTime now) {
 void Server::Work::handle(Connection& connection, const std::string& text, HostTime now) {
   if (!connection.within_message_rate(now)) {
     connection.close(CloseCode::policy, now, "more than 128 messages per second");
+    return;
+  }
+  if (connection.is_foxglove()) {
+    handle_foxglove(connection, text, now);
     return;
   }
   const auto command = parse_command(text);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "web/connection.hpp"
+#include "web/foxglove_feed.hpp"
 #include "web/http_request.hpp"
 #include "web/server.hpp"
 
@@ -76,10 +77,17 @@ private:
   void drop_oldest();
   void serve(Connection& connection, short events, HostTime now);
   void read_head(Connection& connection, HostTime now);
-  void open_socket(Connection& connection, const HttpRequest& request, HostTime now);
+  void open_socket(Connection& connection, const HttpRequest& request, const Admission& admission,
+                   HostTime now);
   void send_picture(Connection& connection, const HttpRequest& request, HostTime now);
   void read_socket(Connection& connection, HostTime now);
   void handle(Connection& connection, const std::string& text, HostTime now);
+  void greet_foxglove(Connection& connection, HostTime now);
+  void handle_foxglove(Connection& connection, const std::string& text, HostTime now);
+  void send_text(Connection& connection, const std::string& text, HostTime now);
+  void begin_foxglove(HostTime now);
+  void make_foxglove(HostTime now);
+  void send_foxglove(HostTime now);
   void refuse(Connection& connection, int status, std::string_view why, HostTime now);
   void send_frames(HostTime now);
   void send_weights(Connection& client, HostTime now);
@@ -87,6 +95,7 @@ private:
                    const SharedBytes& bytes, HostTime now);
   void drop_expired(HostTime now);
   std::size_t clients() const noexcept;
+  bool has_pages() const noexcept;
 
   const ServerLimits limits_;
   UniqueFd listener_, waker_;
@@ -94,6 +103,10 @@ private:
   std::list<Connection> connections_; ///< oldest first
   std::vector<pollfd> polled_;
   std::vector<Record> records_;
+  FoxgloveMessages foxglove_;
+  const std::string session_ = random_hex(8); ///< names this server to applications of Foxglove
+  std::vector<float> drawn_;                  ///< the newest shape for foxglove_
+  HostTime next_drawn_{};
   HostTime next_frames_{};
   HostTime next_accept_{};
   std::atomic<bool> over_{false};

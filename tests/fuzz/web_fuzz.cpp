@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
+
+#include <nendo/base/text.hpp>
 
 #include "commands/command_text.hpp"
 #include "laws.hpp"
 #include "web/client_commands.hpp"
+#include "web/foxglove_feed.hpp"
 #include "web/http_request.hpp"
 #include "web/model_message.hpp"
 #include "web/web_socket.hpp"
@@ -85,13 +89,36 @@ void check_words(std::string_view text) {
   if (const auto* mask = std::get_if<nendo::flow::SetMask>(command)) require(mask->is_usable());
 }
 
+// A client's subscriptions, one request a line, against a list of them that is kept here.
+void check_foxglove(std::string_view text) {
+  const FoxgloveMessages messages; // of a run without a model: channels 1 to 3
+  FoxgloveFeed feed;
+  std::set<std::uint32_t> ids;
+  while (!text.empty()) {
+    const auto request = parse_foxglove(nendo::cut(text, '\n'));
+    require(request || request.error().message.size() <= max_close_reason);
+    if (!request) continue;
+    std::size_t refused = 0;
+    for (const auto& [id, channel] : request->subscribe) {
+      const bool fits =
+          channel >= 1 && channel <= 3 && ids.size() < FoxgloveFeed::max_subscriptions;
+      if (!fits || !ids.insert(id).second) ++refused;
+    }
+    for (const std::uint32_t id : request->unsubscribe)
+      ids.erase(id);
+    require(feed.take(*request, messages).size() == refused);
+  }
+}
+
 } // namespace
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::string_view rest(reinterpret_cast<const char*>(data) + 1, size - 1);
-  if (*data % 4 == 0)
+  if (*data == 255)
+    check_foxglove(rest);
+  else if (*data % 4 == 0)
     check_head(rest);
   else if (*data % 4 == 2)
     check_words(rest);

@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "ros/cdr.hpp"
+#include "ros/scene.hpp"
 #include "ros/types.hpp"
 #include "support/ros2msg.hpp"
 
@@ -119,6 +120,34 @@ TEST_CASE("transforms and poses are read back by their schemas") {
     CHECK(read[3 + 7 * at].number == poses.poses[at].position.x);
     CHECK(read[9 + 7 * at].path == "poses[" + std::to_string(at) + "].orientation.w");
     CHECK(read[9 + 7 * at].number == poses.poses[at].orientation.w);
+  }
+}
+
+TEST_CASE("a surface is read back as the only entity of a scene") {
+  for (const std::string frame : {"", "a", "stage", "stages_"}) { // all alignments
+    const ros::SceneSurface surface{{7, 8},
+                                    frame,
+                                    "model",
+                                    {{0.5, 1.0, -2.0}, {3.0, 4.0, 5.0}, {1e-9, 0.0, 7.0}},
+                                    {0, 1, 2, 2, 1, 0},
+                                    {0.1, 0.2, 0.3, 1.0}};
+    const auto leaves = read_back(ros::scene_update_type, surface);
+    std::vector<double> numbers;
+    std::vector<std::string> names;
+    for (const auto& leaf : leaves) {
+      CHECK(leaf.path.starts_with("entities[0]."));
+      if (leaf.path.starts_with("entities[0].triangles[0].")) {
+        numbers.push_back(leaf.number);
+      } else if (leaf.path == "entities[0].frame_id" || leaf.path == "entities[0].id") {
+        names.push_back(leaf.text);
+      }
+    }
+    CHECK(names == std::vector<std::string>{frame, "model"});
+    CHECK(numbers == std::vector<double>{0,   0,   0,   0, 0, 0, 1,          // pose
+                                         0.5, 1,   -2,  3, 4, 5, 1e-9, 0, 7, // points
+                                         0.1, 0.2, 0.3, 1,                   // colour
+                                         0,   1,   2,   2, 1, 0});           // corners
+    CHECK(leaves.size() == numbers.size() + 7); // times, names and a flag of the entity
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "ros/scene.hpp"
 #include "ros/types.hpp"
 #include "support/ros2msg.hpp"
 #include "support/sha256.hpp"
@@ -14,9 +15,9 @@ using namespace nendo;
 
 namespace {
 
-constexpr ros::MessageType all_types[] = {ros::string_type, ros::joint_state_type,
-                                          ros::tf_message_type, ros::pose_array_type,
-                                          ros::diagnostic_array_type};
+constexpr ros::MessageType all_types[] = {ros::string_type,           ros::joint_state_type,
+                                          ros::tf_message_type,       ros::pose_array_type,
+                                          ros::diagnostic_array_type, ros::scene_update_type};
 
 } // namespace
 

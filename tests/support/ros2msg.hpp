@@ -108,8 +108,9 @@ private:
       if (!is_primitive(field.type) && used.insert(field.type).second) collect(field.type, used);
   }
   std::string description_of(const std::string& type) const {
-    static const std::map<std::string, int> ids{
-        {"int32", 6}, {"uint32", 7}, {"float64", 11}, {"byte", 16}, {"string", 17}};
+    static const std::map<std::string, int> ids{{"uint8", 3},    {"int32", 6}, {"uint32", 7},
+                                                {"float64", 11}, {"bool", 15}, {"byte", 16},
+                                                {"string", 17}};
     std::string fields;
     for (const Field& field : types_.at(type)) {
       const bool nested = !is_primitive(field.type);

@@ -87,14 +87,23 @@ public:
 
   /// As a browser opens a WebSocket; the answer's status.
   int open_socket(const std::string& headers = {}) {
-    send("GET " + with_token("/ws") + " HTTP/1.1\r\nHost: " + authority_ +
+    return open_socket_at("/ws", "Origin: http://" + authority_ + "\r\n" + headers);
+  }
+  /// As Foxglove's page opens one.
+  int open_foxglove(const std::string& protocols = "foxglove.sdk.v1",
+                    const std::string& headers = "Origin: https://app.foxglove.dev\r\n") {
+    return open_socket_at("/foxglove", "Sec-WebSocket-Protocol: " + protocols + "\r\n" + headers);
+  }
+  int open_socket_at(const std::string& path, const std::string& headers) {
+    send("GET " + with_token(path) + " HTTP/1.1\r\nHost: " + authority_ +
          "\r\nUpgrade: websocket\r\nConnection: keep-alive, Upgrade\r\nSec-WebSocket-Version: 13"
-         "\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nOrigin: http://" +
-         authority_ + "\r\n" + headers + "\r\n");
+         "\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+         headers + "\r\n");
     while (received_.find("\r\n\r\n") == std::string::npos && receive())
       ;
     const Answer head = parse_answer();
     if (head.status == 101) received_ = head.body;
+    protocol = header_of(head.head, "Sec-WebSocket-Protocol");
     accept = head.head.find("s3pPLMBiTxaQ9kYGzzhZRbK+xOo=") != std::string::npos;
     return head.status;
   }
@@ -137,7 +146,8 @@ public:
     return ended_;
   }
 
-  bool accept = false; ///< the server answered to the key as it must
+  bool accept = false;  ///< the server answered to the key as it must
+  std::string protocol; ///< the subprotocol that the server chose; may be empty
 
 private:
   bool receive(int wait_ms = patience_ms) {
@@ -148,6 +158,12 @@ private:
     ended_ = got <= 0;
     if (got > 0) received_.append(buffer, static_cast<std::size_t>(got));
     return got > 0;
+  }
+  static std::string header_of(const std::string& head, const std::string& name) {
+    const auto at = head.find("\r\n" + name + ": ");
+    if (at == std::string::npos) return {};
+    const std::size_t begin = at + name.size() + 4;
+    return head.substr(begin, head.find("\r\n", begin) - begin);
   }
   Answer parse_answer() const {
     const auto end = received_.find("\r\n\r\n");
