@@ -255,6 +255,18 @@ TEST_SUITE("layer") {
     CHECK(counts.allocations == 0);
     CHECK(counts.frees == 0);
     CHECK(counts.locks == 0);
+    // The control: what the layer does is counted. It locks where it makes handles.
+    XrHandTrackerEXT another = XR_NULL_HANDLE;
+    XrHandTrackerCreateInfoEXT info{XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT, nullptr, XR_HAND_LEFT_EXT,
+                                    XR_HAND_JOINT_SET_DEFAULT_EXT};
+    const auto create =
+        opened.instance->function<PFN_xrCreateHandTrackerEXT>("xrCreateHandTrackerEXT");
+    {
+      const Restraint restraint;
+      create(session.handle, &info, &another);
+      counts = restraint.counts();
+    }
+    CHECK((counts.locks > 0) == restraint_is_counted);
   }
 
   TEST_CASE("the runtime's clock may differ from CLOCK_MONOTONIC") {
