@@ -80,7 +80,7 @@ void LimbCanvas::draw_dot(const Limb& limb, int column, int row) {
   if (!(off2 <= radius * radius)) return; // also if it is not a number
   const double depth =
       limb.begin.z() + part * (limb.end.z() - limb.begin.z()) + std::sqrt(radius * radius - off2);
-  const auto dot = static_cast<std::size_t>(row * width_ + column);
+  const std::size_t dot = dot_index(column, row);
   if (depth <= depths_[dot]) return;
   depths_[dot] = depth;
   parts_[dot] = limb.part;
@@ -108,9 +108,14 @@ char LimbCanvas::character(int column, int row) const {
       ->character;
 }
 
+std::size_t LimbCanvas::dot_index(int column, int row) const noexcept {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
+         static_cast<std::size_t>(column);
+}
+
 std::uint8_t LimbCanvas::part(int column, int row) const noexcept {
   if (column < 0 || row < 0 || column >= width_ || row >= height_) return nothing;
-  return parts_[static_cast<std::size_t>(row * width_ + column)];
+  return parts_[dot_index(column, row)];
 }
 
 bool LimbCanvas::is_edge(int column, int row) const noexcept {

@@ -40,6 +40,7 @@ public:
 private:
   void draw_dot(const Limb& limb, int column, int row);
   bool is_edge(int column, int row) const noexcept;
+  std::size_t dot_index(int column, int row) const noexcept;
 
   int width_, height_; ///< dots
   double metres_a_dot_;

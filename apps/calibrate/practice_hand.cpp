@@ -117,9 +117,10 @@ hand::SensorAngles PracticeHand::free_motion(double time_s) const {
     const Reach& reach = reaches[n];
     // Fingers go together; the thumb, the gaps and the wrist at other times.
     const std::size_t slot = index_of(reach.sensor);
+    const std::size_t finger = slot / 4;
     const bool flexes = slot >= 4 && slot < 20 && slot % 4 != 3;
     const double phase =
-        flexes ? 0.02 * static_cast<double>(slot / 4) : 0.13 * static_cast<double>(n);
+        flexes ? 0.02 * static_cast<double>(finger) : 0.13 * static_cast<double>(n);
     const double bend = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (time_s / period_s - phase));
     angles[slot] = from_degrees(reach.min_deg + bend * (reach.max_deg - reach.min_deg));
   }

@@ -245,6 +245,7 @@ Result<Exported> write_models(const GltfJob& job, const PlayedFrames& played,
   const takes::FrameSource& source = job.frames.source();
   const double diagonal = source.layout(models.front().version).diagonal();
   std::vector<const deform::Appearance*> looks;
+  looks.reserve(models.size());
   for (const MovingModel& one : models)
     looks.push_back(&source.model(one.version).look);
   const GltfMaterials materials(richest_of(looks), document.file);

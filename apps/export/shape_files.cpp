@@ -148,7 +148,7 @@ void put_head(PointCache format, const ChosenFrames& frames, std::uint32_t count
       words.put(at * frames.period_s());
     return;
   }
-  words.put(std::string_view("POINTCACHE2", 12)); // with its zero byte
+  words.put(std::string_view("POINTCACHE2\0", 12)); // with its zero byte
   words.put(std::uint32_t{1});
   words.put(points);
   words.put(0.0F);

@@ -83,12 +83,14 @@ void add_sensors(const MonitorPicture& picture, cli::ScreenSize size, int rows,
   const int wanted_rows = in_two ? (count + 1) / 2 : count;
   const bool all_fit = wanted_rows <= rows;
   const int shown_rows = all_fit ? wanted_rows : rows - 1;
+  const std::size_t column_width =
+      static_cast<std::size_t>(half_width) + static_cast<std::size_t>(column_gap);
   for (int row = 0; row < shown_rows; ++row) {
     std::string line = sensor_text(picture, sensors[static_cast<std::size_t>(row)],
                                    in_two ? half_width : size.columns);
     const int beside = row + shown_rows;
     if (in_two && beside < count) {
-      line.resize(static_cast<std::size_t>(half_width + column_gap), ' ');
+      line.resize(column_width, ' ');
       line += sensor_text(picture, sensors[static_cast<std::size_t>(beside)], half_width);
     }
     lines.push_back(std::move(line));

@@ -108,6 +108,7 @@ int examine(const Options& options) {
   std::vector<doctor::Finding> findings;
   std::string looked_at;
   std::vector<doctor::Examination> examinations;
+  examinations.reserve(std::size(subjects));
   for (const auto check : subjects)
     examinations.push_back(check());
   if (options.device.empty()) {

@@ -293,7 +293,7 @@ nendo_publish_header plan_segment(const LoopOutline& outline) noexcept {
   plan.shapes_offset = plan.records_offset + plan.record_slots * plan.record_stride;
   plan.states_stride = whole_lines(sizeof(nendo_publish_states));
   plan.states_offset = plan.shapes_offset + plan.shape_slots * plan.shape_stride;
-  plan.segment_bytes = plan.states_offset + plan.record_slots * plan.states_stride;
+  plan.segment_bytes = plan.states_offset + std::uint64_t{plan.record_slots} * plan.states_stride;
   return plan;
 }
 

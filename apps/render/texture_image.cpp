@@ -166,13 +166,13 @@ bool looks_whole(std::string_view contents) {
   if (kind == PictureKind::jpeg) {
     constexpr std::size_t before_pixels = std::size_t{1} << 16;
     return read_header(Decoder(tjInitDecompress(), &tjDestroy), contents) &&
-           contents.find("\xFF\xD9", before_pixels) != contents.npos;
+           contents.find("\xFF\xD9", before_pixels) != std::string_view::npos;
   }
   if (kind != PictureKind::png) return false;
   constexpr std::size_t end_bytes = 12;
   const std::uint32_t side = longer_side_of_png(contents);
   return side >= 1 && side <= Size::most &&
-         contents.substr(contents.size() - end_bytes).find("IEND") != contents.npos;
+         contents.substr(contents.size() - end_bytes).find("IEND") != std::string_view::npos;
 }
 
 Result<Image> decode_png_texture(std::string_view contents) {

@@ -150,7 +150,7 @@ void Client::send_waiting() {
   }
 }
 
-bool Client::try_send(std::string line) {
+bool Client::try_send(const std::string& line) {
   const std::size_t sent = send_now(line);
   if (sent == 0) return false;
   rest_ = line.substr(sent);

@@ -61,7 +61,7 @@ private:
   void flush();
   void send_waiting();
   /// Sends a line, the end of it perhaps later. Returns false if the buffer is full.
-  bool try_send(std::string line);
+  bool try_send(const std::string& line);
   /// Returns the number of bytes that the system took.
   std::size_t send_now(std::string_view bytes);
 

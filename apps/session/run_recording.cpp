@@ -56,6 +56,7 @@ recording::Setup begin_setup(const std::vector<gloves::OpenHand>& hands,
 
 std::vector<driver::RecordCounts> counts_of(const std::vector<gloves::OpenHand>& hands) {
   std::vector<driver::RecordCounts> counts;
+  counts.reserve(hands.size());
   for (const auto& hand : hands)
     counts.push_back(driver::counts_of(hand.glove->stats()));
   return counts;

@@ -213,6 +213,7 @@ std::vector<bool> held(const std::vector<Pose>& poses) {
   }
   const double most = poses.empty() ? 0.0 : *std::max_element(change.begin(), change.end());
   std::vector<bool> held;
+  held.reserve(change.size());
   for (const double one : change)
     held.push_back(one <= max_part * most);
   return held;

@@ -79,13 +79,13 @@ void use_puppet(const puppet::Rig& first, const puppet::Rig& rig, flow::Sculptor
 
 /// The puppet before the first tick, or the one that took its place; or the masks of fingertips.
 void keep_puppet(const flow::DeformLoop& loop, const puppet::RigState& state,
-                 std::shared_ptr<const puppet::Rig> last, Timeline& timeline) {
+                 const std::shared_ptr<const puppet::Rig>& last, Timeline& timeline) {
   const auto& first = loop.changes().puppet(0);
   if (!flow::is_played(first.get())) {
     if (first) timeline.masks = {first};
     return;
   }
-  timeline.rig = last ? std::move(last) : first;
+  timeline.rig = last ? last : first;
   timeline.rig_state = first_state(*timeline.rig);
   timeline.rig_state.symmetric = state.symmetric;
   timeline.sculptor.surface = loop.changes().sculptor_options().surface;

@@ -207,6 +207,7 @@ void GlRenderer::draw_model() const {
     if (textured || corner_colours)
       glDrawArrays(GL_TRIANGLES, static_cast<GLint>(3 * coat.first), count);
     else
+      // OpenGL takes offsets as pointers. NOLINTNEXTLINE(performance-no-int-to-ptr)
       glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset));
   }
   for (const char* what : {"textured", "by_corners", "vertex_colours", "corner_colours"})

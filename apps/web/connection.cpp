@@ -113,7 +113,7 @@ void Connection::end_sending(HostTime now) {
   stage_since_ = now;
 }
 
-void Connection::answer(std::string head, SharedBytes body, HostTime now) {
+void Connection::answer(const std::string& head, SharedBytes body, HostTime now) {
   stage_ = Stage::answer;
   stage_since_ = now;
   closing_ = true;
@@ -122,7 +122,7 @@ void Connection::answer(std::string head, SharedBytes body, HostTime now) {
   flush(now);
 }
 
-void Connection::upgrade(std::string head, HostTime now) {
+void Connection::upgrade(const std::string& head, HostTime now) {
   if (peer_closed_) { // it could neither answer a ping nor close the WebSocket
     stage_ = Stage::ended;
     return;
@@ -140,7 +140,7 @@ void Connection::send(Opcode opcode, const SharedBytes& payload, bool is_shape, 
   flush(now);
 }
 
-void Connection::send_control(std::string frame, HostTime now) {
+void Connection::send_control(const std::string& frame, HostTime now) {
   if (closing_ || catching_up_) return; // so pings without end fill no queue
   queue(shared_bytes(frame), false, now);
   flush(now);

@@ -67,13 +67,13 @@ public:
   void resume_sending(HostTime now);
 
   /// Queues an HTTP answer, after which the connection ends. `body` may be null.
-  void answer(std::string head, SharedBytes body, HostTime now);
+  void answer(const std::string& head, SharedBytes body, HostTime now);
   /// Queues the answer that makes the connection a WebSocket.
-  void upgrade(std::string head, HostTime now);
+  void upgrade(const std::string& head, HostTime now);
   /// Queues a message of a WebSocket. Shapes are not counted against max_queued_bytes.
   void send(Opcode opcode, const SharedBytes& payload, bool is_shape, HostTime now);
   /// Queues a control frame, unless the queue is too long.
-  void send_control(std::string frame, HostTime now);
+  void send_control(const std::string& frame, HostTime now);
   /// Queues a close frame, after which the connection ends.
   void close(CloseCode code, HostTime now, std::string_view reason = {});
 

@@ -189,7 +189,8 @@ std::vector<std::byte> weights_message(const deform::SurfaceField& field) {
   head.number = static_cast<std::uint32_t>(field.number());
   head.vertices = static_cast<std::uint32_t>(terms.starts.size() - 1);
   head.terms = static_cast<std::uint32_t>(terms.values.size());
-  std::vector<std::byte> message(sizeof head + 6 * terms.values.size() + 2 * head.vertices);
+  std::vector<std::byte> message(sizeof head + 6 * terms.values.size() +
+                                 std::size_t{2} * head.vertices);
   WireWriter out(message);
   out.put(head);
   for (const float value : terms.values)

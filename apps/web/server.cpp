@@ -375,7 +375,7 @@ void Server::Work::send_frames(Connection& client, const std::optional<FrameStre
     ++counts.shapes;
     counts.shape_bytes += bytes->size();
   }
-  const auto update = client.feed.update(records_, presented_.stream->lost());
+  auto update = client.feed.update(records_, presented_.stream->lost());
   if (!update) return;
   ++counts.updates;
   counts.update_bytes += update->size();

@@ -7,7 +7,7 @@
 namespace nendo::hand {
 
 void solve_positive_definite(Eigen::Ref<Eigen::MatrixXd> matrix,
-                             Eigen::Ref<Eigen::VectorXd> right) {
+                             Eigen::Ref<Eigen::VectorXd> right) { // NOLINT: a Ref is a reference
   Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(matrix).solveInPlace(right);
 }
 

@@ -61,7 +61,7 @@ Velocities velocities_of(const std::vector<TimedTurn>& turns, double origin_s) {
     }
     sum += change;
   }
-  constexpr std::size_t width = 2 * half_smoothing;
+  constexpr std::size_t width = std::size_t{2} * half_smoothing;
   velocities.first_s = origin_s + grid_s * (begin + half_smoothing);
   for (std::size_t at = width; at < turned.size(); ++at)
     velocities.rad_s.push_back((turned[at] - turned[at - width]) / (grid_s * width));
@@ -131,7 +131,7 @@ struct Likelihoods {
 private:
   double vertical_weight() const { return 1.0 / (tilt_rad * tilt_rad); }
   const Matrix3d& of(int shift) const {
-    return correlations[static_cast<std::size_t>(shift + max_shift)];
+    return correlations[static_cast<std::size_t>(std::ptrdiff_t{shift} + max_shift)];
   }
   Matrix3d evidence(int shift) const {
     Matrix3d sum = weight * of(shift);

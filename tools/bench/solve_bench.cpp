@@ -55,9 +55,11 @@ Ten measure_ten(const Eigen::VectorXd& radii, std::uint64_t rounds) {
   std::vector<Points> poses;
   for (int pose = 0; pose < 64; ++pose) {
     Points& tips = poses.emplace_back(3, 10);
-    for (Eigen::Index i = 0; i < 10; ++i)
+    for (Eigen::Index i = 0; i < 10; ++i) {
+      const Eigen::Index row = i / 5;
       tips.col(i) << -15.0 + 20.0 * static_cast<double>(i % 5) + tremble(random),
-          15.0 + 20.0 * static_cast<double>(i / 5) + tremble(random), 2.0 + tremble(random);
+          15.0 + 20.0 * static_cast<double>(row) + tremble(random), 2.0 + tremble(random);
+    }
   }
   CsrbfSolver solver({.merge_fraction = 0.05});
   CsrbfField field;

@@ -349,12 +349,12 @@ void DeformLoop::Ticker::take(Side side, const PoseSample& pose) noexcept {
 
 void DeformLoop::Ticker::take_samples(TickRecord& record) noexcept {
   HostTime newest{};
-  for (std::uint8_t number = 0; number < inputs_.count(); ++number) {
+  for (std::size_t number = 0; number < inputs_.count(); ++number) {
     GloveHand& hand = inputs_[number];
     const std::size_t count = hand.input.ring == nullptr
                                   ? 0
                                   : hand.input.ring->drain([&](const GloveSample& sample) noexcept {
-                                      take(number, sample);
+                                      take(static_cast<std::uint8_t>(number), sample);
                                     });
     hand.fresh = count > 0;
     if (hand.fresh) {

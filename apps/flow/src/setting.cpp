@@ -288,7 +288,8 @@ SculptorSetup with_settings(const SculptorSetup& now, const SculptorSetup& first
   } else if (other_radii) {
     // Both hands are alike, so that one hand has what two have.
     auto of_hands = supports_of_hands(supports_on_model(wanted.radius_m, units_per_metre), hands);
-    if (of_hands && sculptor.mirror) of_hands = of_both_sides(*std::move(of_hands), 5 * hands);
+    if (of_hands && sculptor.mirror)
+      of_hands = of_both_sides(*std::move(of_hands), Eigen::Index{5} * hands);
     if (of_hands) deformer.supports = *std::move(of_hands);
   }
   if (other_radii || wanted.piece_fraction != now.settings.piece_fraction)

@@ -298,7 +298,7 @@ std::vector<std::string> findings(const Mesh& model, const FaceLandmarks& face) 
                     place_words(face.mouth->lower) + ", corner at " +
                     place_words(face.mouth->corner));
   else
-    lines.push_back(
+    lines.emplace_back(
         "mouth: no opening was found (the skin joins the lips), so there is no jawOpen, "
         "and no function of the lips");
   if (face.eye)
@@ -306,10 +306,10 @@ std::vector<std::string> findings(const Mesh& model, const FaceLandmarks& face) 
                     number_text(face.eye->outer_x) + ", lids at " +
                     place_words(face.eye->upper[1]) + " and " + place_words(face.eye->lower[1]));
   else
-    lines.push_back("eyes: no opening was found, so there is no eyeBlink");
+    lines.emplace_back("eyes: no opening was found, so there is no eyeBlink");
   lines.push_back("brows: " + place_words(face.brow_inner) + " and " +
                   place_words(face.brow_outer) + ", where the surface protrudes");
-  lines.push_back("cheek and side of the jaw: by the proportions of a face");
+  lines.emplace_back("cheek and side of the jaw: by the proportions of a face");
   return lines;
 }
 

@@ -100,7 +100,7 @@ private:
   void add_one(const One& command) {
     put(flow::Command(command));
   }
-  void put(flow::InputLogEntry entry) { events_.push_back({{}, std::move(entry)}); }
+  void put(const flow::InputLogEntry& entry) { events_.push_back({{}, entry}); }
 
   std::vector<flow::InputScript::Event> events_;
   std::size_t timed_ = 0; ///< so many have their times

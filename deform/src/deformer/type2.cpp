@@ -25,7 +25,7 @@ static_assert(2 * max_steps_of_piece * Type2Deformer::max_pieces <= max_midpoint
 /// Of one call.
 std::size_t max_fields(const DeformerOptions& options) {
   if (options.csrbf.keeps_volume())
-    return static_cast<std::size_t>(2 * max_steps_of_piece * FingertipCurve::max_pieces);
+    return std::size_t{2} * max_steps_of_piece * FingertipCurve::max_pieces;
   return static_cast<std::size_t>(options.injective ? options.injective->max_links
                                                     : FingertipCurve::max_pieces);
 }

@@ -121,13 +121,14 @@ Result<Mesh> parse(const Source& source, Format format, const ReadOptions& optio
 bool is_binary(std::string_view text) noexcept {
   const std::string_view head = text.substr(0, 4096);
   const std::size_t zero = head.find('\0');
-  return zero != text.npos && head.find_first_not_of('\0', zero) != text.npos;
+  return zero != std::string_view::npos &&
+         head.find_first_not_of('\0', zero) != std::string_view::npos;
 }
 
 /// Programs write z up into STL and PLY as often as y, and no file says it. Nendo writes y up.
 bool may_have_other_axis_up(Format format, std::string_view text) noexcept {
   if (format == Format::stl) return !text.starts_with(stl_mark);
-  return format == Format::ply && text.substr(0, 400).find("nendo") == text.npos;
+  return format == Format::ply && text.substr(0, 400).find("nendo") == std::string_view::npos;
 }
 
 void lay(const Source& source, Format format, std::optional<UpAxis> up, ReadModel& model) {

@@ -158,7 +158,7 @@ void MtlReader::read(std::string_view text, std::string_view file) {
   while (scanner.next_line());
 }
 
-void MtlReader::begin_material(std::string name) {
+void MtlReader::begin_material(const std::string& name) {
   const auto found = by_name_.find(name);
   material_ = found == by_name_.end() ? stated_.size() : found->second;
   if (material_ < stated_.size()) stated_[material_].described = true;

@@ -51,7 +51,7 @@ private:
     auto operator<=>(const Named&) const = default;
   };
 
-  void begin_material(std::string name);
+  void begin_material(const std::string& name);
   void statement(TextScanner& line);
   void add_texture(TextScanner& line);
   void settle_colour(std::size_t material);

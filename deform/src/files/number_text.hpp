@@ -58,9 +58,9 @@ void append_numbers(std::string& text, const Numbers& numbers) {
 /// As to_number(). An exponent may also begin with D, as Fortran's programs write it: 1.5D+02.
 inline std::optional<double> to_number_of_any_program(std::string_view field) noexcept {
   const auto number = to_number(field);
-  const std::size_t letter = number ? field.npos : field.find_first_of("dD");
+  const std::size_t letter = number ? std::string_view::npos : field.find_first_of("dD");
   std::array<char, 64> digits{}; // more than any double is written with
-  if (letter == field.npos || field.size() > digits.size()) return number;
+  if (letter == std::string_view::npos || field.size() > digits.size()) return number;
   std::copy(field.begin(), field.end(), digits.begin());
   digits[letter] = 'e';
   return to_number({digits.data(), field.size()});

@@ -1,6 +1,7 @@
 // The writer of PLY, binary little-endian.
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <nendo/deform/corner_colours.hpp>
@@ -15,8 +16,8 @@ namespace {
 void append_colour(std::string& text, const Eigen::Vector4f& colour) {
   for (Eigen::Index channel = 0; channel < 4; ++channel) {
     const float part = channel < 3 ? encoded_of(colour[channel]) : colour[channel];
-    append_little_endian(text,
-                         static_cast<std::uint8_t>(255.0F * std::clamp(part, 0.0F, 1.0F) + 0.5F));
+    append_little_endian(
+        text, static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(part, 0.0F, 1.0F))));
   }
 }
 

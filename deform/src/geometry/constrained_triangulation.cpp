@@ -318,8 +318,8 @@ ConstrainedTriangulation::triangles(PlaneFill fill) const {
   for (std::uint32_t triangle = 0; triangle < depth.size(); ++triangle) {
     const bool is_in = fill == PlaneFill::enclosed ? depth[triangle] > 0 : depth[triangle] % 2 == 1;
     if (!is_in) continue;
-    const Triangle corners{corners_[3 * triangle], corners_[3 * triangle + 1],
-                           corners_[3 * triangle + 2]};
+    const std::size_t first = std::size_t{3} * triangle;
+    const Triangle corners{corners_[first], corners_[first + 1], corners_[first + 2]};
     if (std::any_of(corners.begin(), corners.end(), [](std::uint32_t c) { return c < 3; }))
       continue;
     chosen.push_back({corners[0] - 3, corners[1] - 3, corners[2] - 3});

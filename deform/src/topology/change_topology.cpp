@@ -46,7 +46,7 @@ void add_necks(const ThinSurface& surface, std::uint32_t a, std::vector<ThinPlac
     for (const std::uint32_t c : around) {
       if (c < b || !surface.are_neighbours(b, c)) continue;
       const auto opposite = [&](std::uint32_t from, std::uint32_t to) {
-        return surface.from(surface.last(surface.edge_between(from, to)));
+        return surface.from(ThinSurface::last(surface.edge_between(from, to)));
       };
       if (opposite(a, b) == c || opposite(b, a) == c) continue;
       const double length = distance_between(surface.point(a), surface.point(b)) +

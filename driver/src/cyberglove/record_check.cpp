@@ -97,7 +97,7 @@ constexpr int max_confusion = 60;
 } // namespace
 
 std::uint64_t StampJitter::mean() const noexcept {
-  return sum_ / (mean_steps * fraction);
+  return sum_ / (std::uint64_t{mean_steps} * fraction);
 }
 
 void StampJitter::learn(std::uint32_t gap, std::uint32_t period) noexcept {

@@ -71,15 +71,17 @@ private:
   void command(std::string_view text) { send_slowly(dialogue_, text); }
   Result<void> choose_stations(const std::string& digits) {
     std::string& plugged_in = identity_.plugged_in;
+    const auto last =
+        static_cast<std::uint16_t>(std::min<std::size_t>(digits.size(), max_stations));
     const auto is_on = [&](std::uint16_t station) {
       return station <= digits.size() && digits[station - 1U] == '1';
     };
-    for (std::uint16_t station = 1; station <= digits.size(); ++station)
+    for (std::uint16_t station = 1; station <= last; ++station)
       if (is_on(station)) plugged_in += (plugged_in.empty() ? "" : ", ") + std::to_string(station);
     for (const std::uint16_t station : options_.stations)
       if (!is_on(station)) return not_plugged_in(source_, station, plugged_in);
     const auto& wanted = options_.stations;
-    for (std::uint16_t station = 1; station <= digits.size(); ++station)
+    for (std::uint16_t station = 1; station <= last; ++station)
       if (is_on(station) && std::find(wanted.begin(), wanted.end(), station) == wanted.end())
         command(station_command('l', station, ",0\r"));
     return {};

@@ -68,7 +68,8 @@ constexpr std::optional<Sensor> sensor_named(std::string_view name) noexcept {
   for (std::size_t slot = 0; slot < sensor_slots; ++slot) {
     const std::string_view known = sensor_names[slot];
     if (known == name) return static_cast<Sensor>(slot);
-    if (at != name.npos && known.find(newer) == at && known.substr(0, at) == name.substr(0, at) &&
+    if (at != std::string_view::npos && known.find(newer) == at &&
+        known.substr(0, at) == name.substr(0, at) &&
         known.substr(at + newer.size()) == name.substr(at + older.size()))
       return static_cast<Sensor>(slot);
   }
