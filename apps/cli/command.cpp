@@ -33,6 +33,7 @@
 #include "cli/cli.hpp"
 #include "cli/figures.hpp"
 #include "cli/nearest_word.hpp"
+#include "cli/program_name.hpp"
 #include "cli/quantities.hpp"
 
 namespace nendo::cli {
@@ -168,7 +169,7 @@ bool takes_arguments(const CLI::App& app) {
 /// hide it, because help ends the parsing.
 std::optional<std::string> unknown_command(CLI::App& program, int argc, char** argv) {
   const CLI::App* at = &program;
-  std::string path = "nendo";
+  std::string path(program_name());
   for (int word = 1; word < argc; ++word) {
     const std::string name = argv[word];
     if (name.empty() || name.starts_with('-') || at->get_subcommands({}).empty()) break;
@@ -195,7 +196,7 @@ int report_usage(const CLI::App& app, const std::string& first_word, const std::
   const bool is_about_option = !path.empty() || first_word.starts_with('-');
   return report(
       {Errc::usage, (is_about_option ? what : "give a command; " + list_of_commands(app)) +
-                        " (see nendo " + path + "--help)"});
+                        " (see " + std::string(program_name()) + ' ' + path + "--help)"});
 }
 
 // Where standard output was closed, the next file that is opened would get its number, and with it

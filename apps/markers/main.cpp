@@ -13,6 +13,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/command.hpp"
+#include "cli/program_name.hpp"
 #include "markers/markers_commands.hpp"
 
 namespace {
@@ -26,6 +27,7 @@ bool names_no_command(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
+  nendo::cli::set_program_name("nendo-markers");
   nendo::cli::install_stop_signals();
   // One processor is enough for 30 pictures per second. The others are the run's.
   cv::setNumThreads(1);

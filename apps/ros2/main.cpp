@@ -11,6 +11,7 @@
 
 #include "cli/cli.hpp"
 #include "cli/command.hpp"
+#include "cli/program_name.hpp"
 #include "ros2/ros2_command.hpp"
 
 namespace {
@@ -18,6 +19,7 @@ namespace {
 /// Its only command needs no name.
 int run(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
+  nendo::cli::set_program_name("nendo-ros2");
   nendo::cli::install_stop_signals();
   const std::string_view first = argc > 1 ? argv[1] : "";
   std::string command = nendo::ros2::command_name;

@@ -537,6 +537,8 @@ TEST_SUITE("ros2_program") {
           shell("env " + wrong.environment + " " NENDO_ROS2_PROGRAM " " + wrong.arguments);
       CAPTURE(done.out);
       CHECK(done.exit_code == wrong.exit_code);
+      CHECK(done.out.starts_with("nendo-ros2: "));
+      CHECK(done.out.find("see nendo ") == std::string::npos); // which is another program
       CHECK(done.out.find(wrong.remedy) != std::string::npos);
       CHECK(std::ranges::count(done.out, '\n') == 1);
     }
