@@ -449,12 +449,13 @@ TEST_SUITE("chain") {
     const std::string layer = NENDO_OPENXR_LAYER;
     const Spoken names = shell("nm --dynamic --defined-only '" + layer + "'");
     REQUIRE(names.exit_code == 0);
+    const bool is_watched = NENDO_WATCHES_MEMORY || NENDO_WATCHES_THREADS;
     int exported = 0;
-    for (const std::string& line : lines_of(names.out))
-      if (!line.empty()) ++exported;
+    for (const std::string& line : lines_of(names.out)) // the sanitizers export data of their own
+      if (!line.empty() && (!is_watched || line.find(" T ") != std::string::npos)) ++exported;
     CHECK(exported == 1);
     CHECK(names.out.find(" T xrNegotiateLoaderApiLayerInterface") != std::string::npos);
-    if (NENDO_WATCHES_MEMORY || NENDO_WATCHES_THREADS) return; // they bring the C++ library
+    if (is_watched) return; // they bring the C++ library
     const Spoken needed = shell("readelf --dynamic '" + layer + "' | grep NEEDED");
     for (const std::string& line : lines_of(needed.out))
       CHECK_MESSAGE((line.find("[libc.so") != std::string::npos ||
