@@ -310,10 +310,12 @@ void look_around(Instance& instance) noexcept {
 
 } // namespace nendo::openxr
 
-/// The only exported function.
+/// The only exported function. OpenXR names it.
+// NOLINTBEGIN(readability-identifier-naming)
 extern "C" __attribute__((visibility("default"))) XrResult XRAPI_CALL
 xrNegotiateLoaderApiLayerInterface(const nendo::openxr::LoaderInfo* info, const char* layer_name,
                                    nendo::openxr::LayerRequest* request) noexcept {
+  // NOLINTEND(readability-identifier-naming)
   using namespace nendo::openxr;
   static_cast<void>(layer_name); // the name in the manifest, whatever it is
   if (info == nullptr || request == nullptr || info->type != LoaderStructure::loader_info ||

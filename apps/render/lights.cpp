@@ -357,6 +357,7 @@ Pixel encoded(const Vector3f& colour) noexcept {
     const float root4 = std::sqrt(root);
     const float root8 = std::sqrt(root4);
     const float shown = 0.585122381F * root + 0.783140355F * root4 - 0.368262736F * root8;
+    // std::lround() costs a call per channel. NOLINTNEXTLINE(bugprone-incorrect-roundings)
     pixel[channel] = static_cast<std::uint8_t>(std::clamp(shown, 0.0F, 1.0F) * 255.0F + 0.5F);
   }
   return pixel;

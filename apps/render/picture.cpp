@@ -243,8 +243,8 @@ void draw_band(const View3d& view, int band, Image& image) {
     cover(view.opaque[number], number, grid, band, hits);
   std::vector<Vector3f> colours(count);
   for (std::size_t at = 0; at < count; ++at) {
-    const auto row =
-        static_cast<float>(rows.first) + static_cast<float>(at / static_cast<std::size_t>(width));
+    const std::size_t row_of_band = at / static_cast<std::size_t>(width);
+    const float row = static_cast<float>(rows.first) + static_cast<float>(row_of_band);
     colours[at] =
         opaque_colour(view, hits[at], row / static_cast<float>(samples_across * view.size.height));
   }

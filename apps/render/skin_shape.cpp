@@ -351,7 +351,8 @@ private:
     return true;
   }
   std::size_t index(const Vector3i& at) const noexcept {
-    return static_cast<std::size_t>((at.z() * count_.y() + at.y()) * count_.x() + at.x());
+    const std::ptrdiff_t row = std::ptrdiff_t{at.z()} * count_.y() + at.y();
+    return static_cast<std::size_t>(row * count_.x() + at.x());
   }
   Vector3f place(const Vector3i& at) const { return lowest_ + cell_m_ * at.cast<float>(); }
 

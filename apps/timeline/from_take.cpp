@@ -341,7 +341,7 @@ Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const d
     last = *std::move(rig);
   }
   made.has_last_puppet = change.has_value();
-  keep_puppet((*replay)->loop(), setup.loop->options.rig_state, std::move(last), made.timeline);
+  keep_puppet((*replay)->loop(), setup.loop->options.rig_state, last, made.timeline);
   flow::DeformLoop& loop = (*replay)->loop();
   TickRecorder recorder(made.timeline, setup.loop->options, loop);
   while (const auto entry = reader->next()) {

@@ -162,6 +162,10 @@ public:
     std::memcpy(buffer_.data() + used_, &value, sizeof value);
     used_ += sizeof value;
   }
+  void put(const Eigen::Vector3f& point) noexcept {
+    for (const float coordinate : point)
+      put(coordinate);
+  }
   std::size_t used() const noexcept { return used_; }
 
 private:

@@ -69,9 +69,10 @@ private:
     if (fields.size() < 2 || fields[0] != "FINGER") return {};
     std::string_view number = fields[1];
     if (number.ends_with(':')) number.remove_suffix(1);
-    if (to_finite_number(number) != static_cast<double>(row_ / rows_per_group))
-      return bad(in_quotes(line) + " is out of order; FINGER " +
-                 std::to_string(row_ / rows_per_group) + " should come here");
+    const auto group = row_ / rows_per_group;
+    if (to_finite_number(number) != static_cast<double>(group))
+      return bad(in_quotes(line) + " is out of order; FINGER " + std::to_string(group) +
+                 " should come here");
     return {};
   }
   Result<void> read_row(const std::vector<std::string_view>& fields) {

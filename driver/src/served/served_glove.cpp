@@ -40,6 +40,7 @@ public:
     dialogue_.end(transport);
   }
 
+  // The reader of JSON throws for lack of memory alone. NOLINTNEXTLINE(bugprone-exception-escape)
   void push(std::span<const std::byte> chunk, HostTime arrival, Sink& sink) noexcept override {
     const auto take = [&](GloveSample sample) { sink.deliver(sample); };
     Parser& parser = dialogue_.parser();
