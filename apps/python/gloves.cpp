@@ -28,7 +28,7 @@ class PyGlove {
 public:
   PyGlove(std::unique_ptr<driver::Glove> glove, hand::Wearer worn, std::vector<std::string> said,
           std::size_t capacity)
-      : info(glove->info()), wearer(std::move(worn)), notes(std::move(said)),
+      : info(glove->info()), wearer(worn), notes(std::move(said)),
         device(std::move(glove), capacity) {}
 
   void start() {
@@ -82,8 +82,8 @@ py::object open(const std::string& spec, const std::optional<std::string>& side,
   auto wearer = value_of(
       sculpting::find_wearer(glove->info(), glove->info().side, options,
                              [&notes](std::string_view note) { notes.emplace_back(note); }));
-  const py::object opened = py::cast(
-      std::make_unique<PyGlove>(std::move(glove), std::move(wearer), std::move(notes), most));
+  const py::object opened =
+      py::cast(std::make_unique<PyGlove>(std::move(glove), wearer, std::move(notes), most));
   close_at_exit(opened);
   return opened;
 }
