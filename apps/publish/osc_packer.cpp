@@ -36,22 +36,27 @@ void OscPacker::add(const char* address, const char* text, std::span<const float
   add_message(address, message);
 }
 
-void OscPacker::add_message(const char* address, void* message) {
+// Handles are void* until liblo 0.31, and pointers to structs of their own since 0.32.
+void OscPacker::add_message(const char* address, void* untyped) {
+  const auto message = static_cast<lo_message>(untyped);
   const std::size_t more = element_head_bytes + lo_message_length(message, address);
-  if (bundle_ != nullptr && lo_bundle_length(bundle_) + more > max_datagram_bytes) flush();
+  if (bundle_ != nullptr &&
+      lo_bundle_length(static_cast<lo_bundle>(bundle_)) + more > max_datagram_bytes)
+    flush();
   if (bundle_ == nullptr) bundle_ = lo_bundle_new(immediately);
-  lo_bundle_add_message(bundle_, address, message); // which owns it from here on
+  lo_bundle_add_message(static_cast<lo_bundle>(bundle_), address, message); // which owns it then
 }
 
 void OscPacker::flush() {
   if (bundle_ == nullptr) return;
+  const auto bundle = static_cast<lo_bundle>(bundle_);
   std::array<std::byte, max_datagram_bytes> datagram;
-  std::size_t bytes = lo_bundle_length(bundle_);
+  std::size_t bytes = lo_bundle_length(bundle);
   if (bytes <= datagram.size()) {
-    lo_bundle_serialise(bundle_, datagram.data(), &bytes);
+    lo_bundle_serialise(bundle, datagram.data(), &bytes);
     send_(std::span(datagram).first(bytes));
   }
-  lo_bundle_free_recursive(bundle_);
+  lo_bundle_free_recursive(bundle);
   bundle_ = nullptr;
 }
 
