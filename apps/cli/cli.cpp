@@ -5,12 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/program_name.hpp"
+#include "cli/run_main.hpp"
 
 namespace nendo::cli {
 namespace {
-
-std::string_view own_name = "nendo";
 
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free); // or a signal handler must not touch it
@@ -21,21 +19,13 @@ void on_stop_signal(int) {
 
 } // namespace
 
-void set_program_name(std::string_view wanted) noexcept {
-  own_name = wanted;
-}
-
-std::string_view program_name() noexcept {
-  return own_name;
-}
-
 int report(const Error& error) {
-  std::cerr << own_name << ": " << error.message << std::endl;
+  std::cerr << program_name() << ": " << error.message << std::endl;
   return static_cast<int>(error.code);
 }
 
 void note(std::string_view text) {
-  std::cerr << own_name << ": " << text << std::endl;
+  std::cerr << program_name() << ": " << text << std::endl;
 }
 
 std::string json_text(const nlohmann::ordered_json& object) {

@@ -33,8 +33,8 @@
 #include "cli/cli.hpp"
 #include "cli/figures.hpp"
 #include "cli/nearest_word.hpp"
-#include "cli/program_name.hpp"
 #include "cli/quantities.hpp"
+#include "cli/run_main.hpp"
 
 namespace nendo::cli {
 namespace {

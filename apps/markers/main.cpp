@@ -1,19 +1,12 @@
 // The nendo-markers program.
 
 #include <csignal>
-#include <exception>
-#include <iostream>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include <opencv2/core/utility.hpp>
 
-#include <nendo/base/result.hpp>
-
 #include "cli/cli.hpp"
-#include "cli/command.hpp"
-#include "cli/program_name.hpp"
+#include "cli/run_main.hpp"
 #include "markers/markers_commands.hpp"
 
 namespace {
@@ -27,26 +20,16 @@ bool names_no_command(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
-  nendo::cli::set_program_name("nendo-markers");
   nendo::cli::install_stop_signals();
   // One processor is enough for 30 pictures per second. The others are the run's.
   cv::setNumThreads(1);
-  std::string track = "track";
-  std::vector<char*> arguments(argv, argv + argc);
-  if (names_no_command(argc, argv)) arguments.insert(arguments.begin() + 1, track.data());
-  const auto count = static_cast<int>(arguments.size());
-  arguments.push_back(nullptr);
-  return nendo::cli::run_program(count, arguments.data(), nendo::markers::program_summary,
-                                 nendo::markers::add_commands);
+  return nendo::cli::run_program_with(names_no_command(argc, argv) ? "track" : "", argc, argv,
+                                      nendo::markers::program_summary,
+                                      nendo::markers::add_commands);
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) { // out of memory, mostly
-    std::cerr << "nendo-markers: " << error.what() << '\n';
-    return static_cast<int>(nendo::Errc::failed);
-  }
+  return nendo::cli::run_main("nendo-markers", [&] { return run(argc, argv); });
 }

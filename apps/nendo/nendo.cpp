@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
-#include <exception>
-#include <iostream>
 #include <string_view>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <nendo/base/result.hpp>
-
-#include "cli/command.hpp"
 #include "cli/huge_pages.hpp"
+#include "cli/run_main.hpp"
 #include "nendo/commands.hpp"
 
 namespace {
@@ -42,10 +38,5 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   if (argc > 1 && works_without_a_clock(argv[1])) nendo::cli::use_huge_pages(argv);
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) { // out of memory, mostly
-    std::cerr << "nendo: " << error.what() << '\n';
-    return static_cast<int>(nendo::Errc::failed);
-  }
+  return nendo::cli::run_main("nendo", [&] { return run(argc, argv); });
 }

@@ -1,18 +1,14 @@
 // The nendo-bench program. `nendo bench` starts it, and its --help speaks as that command.
 
-#include <exception>
-#include <iostream>
 #include <string_view>
 #include <vector>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <nendo/base/result.hpp>
-
 #include "bench/bench.hpp"
-#include "cli/command.hpp"
 #include "cli/huge_pages.hpp"
+#include "cli/run_main.hpp"
 
 namespace {
 
@@ -35,10 +31,5 @@ int main(int argc, char** argv) {
   // As the commands that these measure. All else is measured as a run works.
   const std::string_view wanted = argc > 1 ? argv[1] : "";
   if (wanted == "cut" || wanted == "join") nendo::cli::use_huge_pages(argv);
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) { // out of memory, mostly
-    std::cerr << "nendo: " << error.what() << '\n';
-    return static_cast<int>(nendo::Errc::failed);
-  }
+  return nendo::cli::run_main("nendo", [&] { return run(argc, argv); });
 }

@@ -170,3 +170,21 @@ function(nendo_module name)
     target_link_libraries(${target} ${ARG_LIBRARIES})
   endif()
 endfunction()
+
+# nendo_separate_program(NAME COMPONENT LIBRARY): a program with a package of its own. main.cpp is all but the library, which
+# tests also link, and NAME.1 is its manual page.
+function(nendo_separate_program name component library)
+  add_executable(${name} main.cpp)
+  nendo_settings(${name} PRIVATE)
+  target_link_libraries(${name} PRIVATE ${library})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
+
+  set(page ${CMAKE_CURRENT_BINARY_DIR}/${name}.1.gz)
+  add_custom_command(OUTPUT ${page}
+    COMMAND sh -c "exec gzip -9nc '${CMAKE_CURRENT_SOURCE_DIR}/${name}.1' > '${page}'" # as Debian has them
+    DEPENDS ${name}.1
+    VERBATIM)
+  add_custom_target(${component}_manual ALL DEPENDS ${page})
+  install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component})
+endfunction()
