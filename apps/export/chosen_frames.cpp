@@ -98,11 +98,13 @@ void ChosenFrames::hold_nearest(double moment_s) {
 }
 
 Result<Exported> export_to_one_file(ChosenFrames& frames, const std::filesystem::path& path,
-                                    const PutFrame& put) {
+                                    const PutFrame& put, const PutFrame& put_end) {
   auto file = FileReplacement::begin(path);
   if (!file) return file.error();
   const auto done = frames.for_each([&] { return put(*file); });
   if (!done) return done.error();
+  if (put_end)
+    if (const auto ended = put_end(*file); !ended) return ended.error();
   if (const auto finished = file->finish(); !finished) return finished.error();
   Exported report = frames.report();
   report.files = {path.string()};

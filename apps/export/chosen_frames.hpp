@@ -142,9 +142,10 @@ private:
 /// Writes the latest frame to the file. Before the first frame it also writes the file's header.
 using PutFrame = std::function<Result<void>(FileReplacement& file)>;
 
-/// Writes the file atomically and replaces an existing one. Blocks. Errors: those of
-/// ChosenFrames::next(), `put` and FileReplacement.
+/// Writes the file atomically and replaces an existing one: each frame by `put`, and after the last
+/// one what follows by `put_end`, if there is such a function. Blocks. Errors: those of
+/// ChosenFrames::next(), both functions and FileReplacement.
 Result<Exported> export_to_one_file(ChosenFrames& frames, const std::filesystem::path& path,
-                                    const PutFrame& put);
+                                    const PutFrame& put, const PutFrame& put_end = {});
 
 } // namespace nendo::exporting

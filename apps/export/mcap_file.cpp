@@ -119,23 +119,20 @@ private:
 
 Result<Exported> export_mcap(ChosenFrames& frames, std::span<const timeline::Event> commands,
                              const McapOptions& options, const std::filesystem::path& path) {
-  auto file = FileReplacement::begin(path);
-  if (!file) return file.error();
   TakeMessages messages(commands, options);
-  const auto made = frames.for_each([&]() -> Result<void> {
+  const auto put_new = [&](FileReplacement& file) -> Result<void> {
+    const auto bytes = messages.writer().take();
+    return bytes.empty() ? Result<void>{} : file.write(bytes);
+  };
+  const auto put = [&](FileReplacement& file) -> Result<void> {
     if (auto added = messages.add(frames); !added)
       return Error{added.error().code, path.string() + ": " + added.error().message};
-    const auto bytes = messages.writer().take();
-    return bytes.empty() ? Result<void>{} : file->write(bytes);
+    return put_new(file);
+  };
+  return export_to_one_file(frames, path, put, [&](FileReplacement& file) {
+    messages.writer().finish();
+    return put_new(file);
   });
-  if (!made) return made.error();
-  messages.writer().finish();
-  if (const auto written = file->write(messages.writer().take()); !written) return written.error();
-  if (const auto finished = file->finish(); !finished) return finished.error();
-  Exported report = frames.report();
-  report.files = {path.string()};
-  report.bytes = file->size();
-  return report;
 }
 
 } // namespace nendo::exporting
