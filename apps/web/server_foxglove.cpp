@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include <nendo/base/utc.hpp>
 #include <nendo/version.hpp>
 
 #include "web/server_work.hpp"
@@ -15,13 +16,6 @@ namespace {
 /// A message has the whole model, so it is sent less often than the hands.
 constexpr std::chrono::milliseconds drawn_period(200);
 
-/// By the clock of the system as it is now, which may be set meanwhile.
-std::int64_t utc_ns(HostTime time, HostTime now) {
-  using std::chrono::nanoseconds;
-  const auto utc = std::chrono::system_clock::now().time_since_epoch() - (now - time);
-  return std::chrono::duration_cast<nanoseconds>(utc).count();
-}
-
 } // namespace
 
 void Server::Work::send_text(Connection& connection, const std::string& text, HostTime now) {
@@ -29,7 +23,7 @@ void Server::Work::send_text(Connection& connection, const std::string& text, Ho
 }
 
 void Server::Work::begin_foxglove(HostTime now) {
-  foxglove_.begin(*presented_.model, utc_ns(now, now));
+  foxglove_.begin(*presented_.model, utc_ns(now));
 }
 
 void Server::Work::greet_foxglove(Connection& connection, HostTime now) {
@@ -59,8 +53,8 @@ void Server::Work::make_foxglove(HostTime now) {
   FrameStream& stream = *presented_.stream;
   stream.set_hands_active(hands_wanted);
   if (const FrameStream::Hands* const hands = stream.take_hands())
-    foxglove_.set_hands(hands->present.all(), utc_ns(hands->woke, now));
-  if (const auto woke = stream.take_drawn(drawn_)) foxglove_.set_shape(drawn_, utc_ns(*woke, now));
+    foxglove_.set_hands(hands->present.all(), utc_ns(hands->woke));
+  if (const auto woke = stream.take_drawn(drawn_)) foxglove_.set_shape(drawn_, utc_ns(*woke));
   if (!model_wanted || now < next_drawn_) return;
   next_drawn_ = now + drawn_period;
   stream.request_drawn();
