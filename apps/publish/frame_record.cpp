@@ -37,11 +37,9 @@ void describe_state(const flow::HandFrame& hand, nendo_publish_hand_state& out) 
   if (hand.wrist_switch == WristSwitch::on) out.flags |= NENDO_PUBLISH_SWITCH_ON;
   if (hand.tracked) out.flags |= NENDO_PUBLISH_TRACKED;
   if (hand.lost) out.flags |= NENDO_PUBLISH_LOST;
-  const hand::AngleSources sources = hand::angle_sources(hand.sensors, hand.left_out);
-  for (std::size_t at = 0; at < hand::angle_count; ++at) {
-    if (sources[at] == hand::AngleSource::measured) out.measured |= 1U << at;
+  out.measured = hand::measured_bits(hand::angle_sources(hand.sensors, hand.left_out));
+  for (std::size_t at = 0; at < hand::angle_count; ++at)
     out.angles[at] = hand.angles[hand::angle_at(at)];
-  }
   out.sampled_ns = nanoseconds(hand.sampled.time_since_epoch());
   out.tracked_ns = nanoseconds(hand.tracked_at.time_since_epoch());
   describe_pose(hand.T_stage_wrist, out.forearm);

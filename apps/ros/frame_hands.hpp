@@ -24,12 +24,11 @@ inline HandState state_of(Side side, const flow::HandFrame& hand) noexcept {
   for (std::size_t at = 0; at < hand::joint_count; ++at)
     state.joints[at] = stage_pose(hand.pose.joints[at]);
   state.forearm = stage_pose(hand.T_stage_wrist);
-  const hand::AngleSources sources = hand::angle_sources(hand.sensors, hand.left_out);
-  for (std::size_t at = 0; at < hand::angle_count; ++at) {
-    if (hand.sensors == SensorMask{} || sources[at] == hand::AngleSource::measured)
-      state.measured |= 1U << at;
+  state.measured = hand.sensors == SensorMask{}
+                       ? (1U << hand::angle_count) - 1
+                       : hand::measured_bits(hand::angle_sources(hand.sensors, hand.left_out));
+  for (std::size_t at = 0; at < hand::angle_count; ++at)
     state.angles_rad[at] = hand.angles[hand::angle_at(at)];
-  }
   return state;
 }
 

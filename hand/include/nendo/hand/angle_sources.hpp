@@ -3,6 +3,7 @@
 // themselves do not show it, and programs that record, calibrate or judge poses need it.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -40,6 +41,14 @@ constexpr bool is_estimated(AngleSource source) noexcept {
 
 /// The source of each angle, by index_of(Angle).
 using AngleSources = std::array<AngleSource, angle_count>;
+
+/// Returns which angles are measured: bit k is that of the angle with index k.
+constexpr std::uint32_t measured_bits(const AngleSources& sources) noexcept {
+  std::uint32_t bits = 0;
+  for (std::size_t at = 0; at < angle_count; ++at)
+    if (sources[at] == AngleSource::measured) bits |= 1U << at;
+  return bits;
+}
 
 /// Returns the source of each angle of joint_angles() for a glove with these sensors
 /// (GloveInfo::sensors, or any sample's `present`), of which some may be `left_out`. The result
