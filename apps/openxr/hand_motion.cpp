@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 
+#include <nendo/hand/joints.hpp>
+
 namespace nendo::openxr {
 namespace {
 
-constexpr std::size_t wrist = 1;
-
-/// The joint that carries a joint along. Each is computed after that.
-constexpr std::array<std::size_t, joint_count> parents{wrist, wrist, // palm, and the wrist itself
-                                                       wrist, 2,     3,  4,       // thumb
-                                                       wrist, 6,     7,  8,  9,   // index
-                                                       wrist, 11,    12, 13, 14,  // middle
-                                                       wrist, 16,    17, 18, 19,  // ring
-                                                       wrist, 21,    22, 23, 24}; // little
+constexpr std::size_t wrist = hand::index_of(hand::Joint::wrist);
 
 /// Returns the rotation vector, in radians, that turns `from` into `to` by the shorter way.
 Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) noexcept {
@@ -37,8 +31,9 @@ void extrapolate(MovingHand& hand, const HandPose& newest, double after_s) noexc
         turned_by(hand.angular_rad_per_s[k] * after_s, newest[k].orientation);
   hand.joints[wrist].position = newest[wrist].position + hand.linear_m_per_s[wrist] * after_s;
   for (std::size_t k = 0; k < joint_count; ++k) {
-    if (k == wrist) continue;
-    const std::size_t parent = parents[k];
+    const auto above = hand::parent_of(static_cast<hand::Joint>(k));
+    if (!above) continue;
+    const std::size_t parent = hand::index_of(*above); // it precedes the joint, or is the wrist
     const Eigen::Vector3d bone =
         newest[parent].orientation.conjugate() * (newest[k].position - newest[parent].position);
     hand.joints[k].position = hand.joints[parent].position + hand.joints[parent].orientation * bone;

@@ -9,23 +9,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <nendo/base/shared_name.hpp>
+
 namespace nendo::openxr {
-namespace {
-
-constexpr std::size_t max_name = 64; // is_shared_name() of nendo/base, which needs the C++ library
-
-bool is_name(const char* name) noexcept {
-  const std::size_t length = std::strlen(name);
-  if (length == 0 || length > max_name) return false;
-  for (const char* at = name; *at != '\0'; ++at) {
-    const bool is_plain = (*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z') ||
-                          (*at >= '0' && *at <= '9') || std::strchr("-_.", *at) != nullptr;
-    if (!is_plain) return false;
-  }
-  return true;
-}
-
-} // namespace
 
 void SegmentFollower::close() noexcept {
   for (std::size_t slot = 0; slot < slots; ++slot) {
@@ -36,7 +22,7 @@ void SegmentFollower::close() noexcept {
 }
 
 bool SegmentFollower::set_name(const char* name) noexcept {
-  if (!is_name(name)) return false;
+  if (!is_shared_name(name)) return false;
   std::snprintf(path_.data(), path_.size(), "/dev/shm/nendo-%s", name);
   return true;
 }

@@ -30,57 +30,32 @@ bool convert(const nendo_publish_hand& hand, HandPose& pose) noexcept {
   return true;
 }
 
-const std::uint64_t* stage_at(const char* place) noexcept {
-  return reinterpret_cast<const std::uint64_t*>(place);
-}
-
 } // namespace
 
-SegmentView::SegmentView(const void* base, std::uint64_t bytes) noexcept {
-  if (bytes < sizeof header_) return;
-  nendo_publish_copy(&header_, base, sizeof header_);
-  if (!nendo_publish_is_usable(&header_, bytes)) return;
-  base_ = static_cast<const char*>(base);
-  bytes_ = bytes;
-}
-
 bool SegmentView::is_live() const noexcept {
-  return is_usable() && nendo_publish_state(base_) == NENDO_PUBLISH_LIVE;
-}
-
-/// Copies content `number`, which begins with its stage. Returns false if it is not there.
-template <class Content>
-bool SegmentView::copy(std::uint64_t offset, std::uint64_t number,
-                       Content& content) const noexcept {
-  const char* const place = base_ + offset;
-  if (number == 0 || !nendo_publish_holds(stage_at(place), number)) return false;
-  nendo_publish_copy(&content, place, sizeof content);
-  return nendo_publish_still_holds(stage_at(place), number) != 0;
+  return is_usable() && segment_.state() == NENDO_PUBLISH_LIVE;
 }
 
 bool SegmentView::copy_hand(std::uint64_t number, std::size_t side, Copied& copied) const noexcept {
-  const char* const slot =
-      base_ + header_.records_offset + number % header_.record_slots * header_.record_stride;
+  const std::uint64_t at = segment_.record_at(number);
   constexpr std::size_t hands = offsetof(nendo_publish_record, hands);
-  if (number == 0 || !nendo_publish_holds(stage_at(slot), number)) return false;
-  nendo_publish_copy(&copied.head, slot, hands);
-  nendo_publish_copy(&copied.hand, slot + hands + side * sizeof copied.hand, sizeof copied.hand);
-  return nendo_publish_still_holds(stage_at(slot), number) != 0 &&
+  return segment_.copy(at, number, at, &copied.head, hands) &&
+         segment_.copy(at, number, at + hands + side * sizeof copied.hand, &copied.hand,
+                       sizeof copied.hand) &&
          (copied.hand.flags & NENDO_PUBLISH_PRESENT) != 0;
 }
 
 bool SegmentView::copy_radii(std::uint64_t generation, std::size_t side, PublishedHand& hand,
                              double& rate_hz) const noexcept {
   nendo_publish_setup setup;
-  if (!copy(header_.setup_offset, generation, setup)) return false;
+  if (!segment_.copy(segment_.header().setup_offset, generation, setup)) return false;
   hand.radii_m.fill(0.0F);
-  const std::uint64_t all = sizeof hand.radii_m * 2;
-  if (setup.radii_offset != 0 && nendo_publish_fits(bytes_, setup.radii_offset, 1, all)) {
-    nendo_publish_copy(hand.radii_m.data(), base_ + setup.radii_offset + side * sizeof hand.radii_m,
-                       sizeof hand.radii_m);
-    if (!nendo_publish_still_holds(stage_at(base_ + header_.setup_offset), generation))
-      return false;
-  }
+  constexpr std::uint64_t bytes = sizeof hand.radii_m;
+  if (setup.radii_offset != 0 &&
+      nendo_publish_fits(segment_.bytes(), setup.radii_offset, 1, 2 * bytes) &&
+      !segment_.copy_of_setup(generation, setup.radii_offset + side * bytes, hand.radii_m.data(),
+                              bytes))
+    return false;
   for (float& radius_m : hand.radii_m)
     if (!(radius_m > 0.0F && radius_m < max_radius_m)) radius_m = usual_radius_m;
   rate_hz = setup.rate_hz >= 0.1 && setup.rate_hz <= 1e5 ? setup.rate_hz : 90.0;
@@ -89,9 +64,7 @@ bool SegmentView::copy_radii(std::uint64_t generation, std::size_t side, Publish
 
 bool SegmentView::is_tracker_lost(std::uint64_t number, std::size_t side) const noexcept {
   nendo_publish_states states;
-  return header_.states_offset != 0 &&
-         copy(header_.states_offset + number % header_.record_slots * header_.states_stride, number,
-              states) &&
+  return segment_.has_states() && segment_.copy(segment_.states_at(number), number, states) &&
          (states.hands[side].flags & NENDO_PUBLISH_LOST) != 0;
 }
 
@@ -99,7 +72,7 @@ void SegmentView::read_earlier(const Copied& newest, std::size_t side, double ra
                                PublishedHand& hand) const noexcept {
   hand.has_earlier = false;
   // The oldest slot may be overwritten meanwhile.
-  const double slots = std::max(1.0, static_cast<double>(header_.record_slots) - 2.0);
+  const double slots = std::max(1.0, static_cast<double>(segment_.header().record_slots) - 2.0);
   const auto back = static_cast<std::uint64_t>(std::clamp(rate_hz * between_poses_s, 1.0, slots));
   Copied earlier;
   if (newest.head.number <= back || !copy_hand(newest.head.number - back, side, earlier)) return;
@@ -116,7 +89,7 @@ bool SegmentView::read(std::size_t side, std::int64_t now_ns, PublishedHand& han
   std::uint64_t number = 0;
   bool is_there = false;
   for (int attempt = 0; attempt < 3 && !is_there; ++attempt) { // the writer may have overtaken it
-    number = nendo_publish_newest(base_);
+    number = segment_.newest();
     is_there = copy_hand(number, side, newest);
   }
   double rate_hz = 0.0;

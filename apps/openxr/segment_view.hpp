@@ -1,14 +1,13 @@
 #pragma once
-// Reads hands from the memory of a published segment (apps/publish/FORMAT.md). The writer is not
-// trusted: its header is copied once and checked, and a later change of it cannot make a reader
-// leave the memory.
+// Reads hands from the memory of a published segment, whose writer is not trusted.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include <Eigen/Geometry>
-#include <nendo_publish.h>
+
+#include "publish/checked_segment.hpp"
 
 namespace nendo::openxr {
 
@@ -35,11 +34,10 @@ class SegmentView {
 public:
   /// A view of nothing, which has no hands.
   constexpr SegmentView() = default;
-  /// `base` is aligned to 8 and has `bytes` readable bytes as long as the view is used. What is no
-  /// segment of a version that this program reads is a view of nothing.
-  SegmentView(const void* base, std::uint64_t bytes) noexcept;
+  /// The arguments are those of CheckedSegment.
+  SegmentView(const void* base, std::uint64_t bytes) noexcept : segment_(base, bytes) {}
 
-  bool is_usable() const noexcept { return base_ != nullptr; }
+  bool is_usable() const noexcept { return segment_.is_usable(); }
   /// Returns whether the writer has not ended the segment.
   bool is_live() const noexcept;
   /// Reads a hand, 0 left or 1 right. Returns false if no glove drives it, if the writer has ended
@@ -53,8 +51,6 @@ private:
     nendo_publish_record head; ///< without its hands
     nendo_publish_hand hand;
   };
-  template <class Content>
-  bool copy(std::uint64_t offset, std::uint64_t number, Content& content) const noexcept;
   bool copy_hand(std::uint64_t number, std::size_t side, Copied& copied) const noexcept;
   bool copy_radii(std::uint64_t generation, std::size_t side, PublishedHand& hand,
                   double& rate_hz) const noexcept;
@@ -62,9 +58,7 @@ private:
   void read_earlier(const Copied& newest, std::size_t side, double rate_hz,
                     PublishedHand& hand) const noexcept;
 
-  const char* base_ = nullptr;
-  std::uint64_t bytes_ = 0;
-  nendo_publish_header header_{};
+  publish::CheckedSegment segment_;
 };
 
 } // namespace nendo::openxr

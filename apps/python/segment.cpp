@@ -1,18 +1,9 @@
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <memory>
 #include <thread>
 #include <vector>
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <nendo/base/unique_fd.hpp>
-#include <nendo_publish.h>
-
+#include "publish/mapped_segment.hpp"
 #include "python/frames.hpp"
 
 namespace nendo::python {
@@ -21,38 +12,24 @@ namespace {
 constexpr std::chrono::milliseconds between_records{1};
 constexpr int tries = 1000; ///< a reader is too late only if the writer is faster than a copy
 
-/// Another program's run, in shared memory. The header is copied once, and checked, so that a
-/// writer who changes it cannot make this reader leave the memory.
+/// Another program's run, in shared memory.
 class Segment {
 public:
-  Segment(UniqueFd file, const char* base, std::uint64_t bytes, const nendo_publish_header& header)
-      : file_(std::move(file)), base_(base), bytes_(bytes), header_(header) {}
-  ~Segment() { ::munmap(const_cast<char*>(base_), bytes_); }
-  Segment(const Segment&) = delete;
-  Segment& operator=(const Segment&) = delete;
+  explicit Segment(publish::MappedSegment mapped)
+      : mapped_(std::move(mapped)), contents_(mapped_.contents()) {}
 
   static std::unique_ptr<Segment> attach(const std::string& name);
 
-  std::uint64_t newest() const noexcept { return nendo_publish_newest(base_); }
-  /// Returns whether the run has ended, or was killed: while it lives, it holds a lock.
-  bool has_ended() const noexcept {
-    struct flock lock = {};
-    lock.l_type = F_RDLCK;
-    lock.l_whence = SEEK_SET;
-    return nendo_publish_state(base_) == NENDO_PUBLISH_ENDED ||
-           (::fcntl(file_.get(), F_OFD_GETLK, &lock) == 0 && lock.l_type == F_UNLCK);
-  }
+  std::uint64_t newest() const noexcept { return contents_.newest(); }
+  bool has_ended() const noexcept { return mapped_.has_ended(); }
 
   /// Returns the frame of record `number`, or nullopt if the writer has overwritten it.
   std::optional<FrameCopy> frame(std::uint64_t number) const {
     nendo_publish_record record;
     nendo_publish_states states{};
-    const std::uint64_t slot = number % header_.record_slots;
-    if (!copy(header_.records_offset + slot * header_.record_stride, number, record))
-      return std::nullopt;
+    if (!contents_.copy(contents_.record_at(number), number, record)) return std::nullopt;
     const bool has_angles =
-        header_.states_offset != 0 &&
-        copy(header_.states_offset + slot * header_.states_stride, number, states);
+        contents_.has_states() && contents_.copy(contents_.states_at(number), number, states);
     return copy_of(record, has_angles ? &states : nullptr);
   }
   FrameCopy newest_frame() const {
@@ -79,13 +56,14 @@ public:
   deform::Points vertices() const {
     return newest_of<deform::Points>([this](std::uint64_t number) -> std::optional<deform::Points> {
       nendo_publish_setup setup;
-      std::vector<float> floats(3 * std::size_t{header_.vertices});
-      const std::uint64_t at =
-          header_.shapes_offset + number % header_.shape_slots * header_.shape_stride;
-      if (!copy_setup(setup) || !copy_behind(at, sizeof(nendo_publish_shape), number, floats) ||
-          !nendo_publish_still_holds(stage(header_.setup_offset), setup.generation))
+      std::vector<float> floats(3 * std::size_t{header().vertices});
+      const std::uint64_t at = contents_.shape_at(number);
+      if (!contents_.copy_setup(setup) ||
+          !contents_.copy(at, number, at + sizeof(nendo_publish_shape), floats.data(),
+                          4 * floats.size()) ||
+          !contents_.copy_of_setup(setup.generation, at, nullptr, 0)) // it is still the same
         return std::nullopt;
-      const Eigen::Map<const Eigen::Matrix3Xf> from(floats.data(), 3, header_.vertices);
+      const Eigen::Map<const Eigen::Matrix3Xf> from(floats.data(), 3, header().vertices);
       const Eigen::Vector3d origin = Eigen::Map<const Eigen::Vector3d>(setup.origin) +
                                      Eigen::Map<const Eigen::Vector3d>(setup.offset);
       return deform::Points((setup.unit * from.cast<double>()).colwise() + origin);
@@ -95,40 +73,21 @@ public:
   std::vector<std::uint32_t> triangles() const {
     for (int attempt = 0; attempt < tries; ++attempt) {
       nendo_publish_setup setup;
-      std::vector<std::uint32_t> corners(3 * std::size_t{header_.triangles});
-      if (!copy_setup(setup)) continue;
-      nendo_publish_copy(corners.data(), base_ + header_.triangles_offset, 4 * corners.size());
-      if (!nendo_publish_still_holds(stage(header_.setup_offset), setup.generation)) continue;
+      std::vector<std::uint32_t> corners(3 * std::size_t{header().triangles});
+      if (!contents_.copy_setup(setup) ||
+          !contents_.copy_of_setup(setup.generation, header().triangles_offset, corners.data(),
+                                   4 * corners.size()))
+        continue;
       if (std::all_of(corners.begin(), corners.end(),
-                      [this](std::uint32_t corner) { return corner < header_.vertices; }))
+                      [this](std::uint32_t corner) { return corner < header().vertices; }))
         return corners;
       raise({Errc::bad_input, "the segment has a triangle without a vertex"});
     }
     raise({Errc::failed, "the segment's setup is not complete"});
   }
-  const nendo_publish_header& header() const noexcept { return header_; }
+  const nendo_publish_header& header() const noexcept { return contents_.header(); }
 
 private:
-  const std::uint64_t* stage(std::uint64_t offset) const noexcept {
-    return reinterpret_cast<const std::uint64_t*>(base_ + offset);
-  }
-  /// Copies content `number` at this offset. False: it is not there, or no longer.
-  template <class Content>
-  bool copy(std::uint64_t offset, std::uint64_t number, Content& content) const noexcept {
-    if (number == 0 || !nendo_publish_holds(stage(offset), number)) return false;
-    nendo_publish_copy(&content, base_ + offset, sizeof content);
-    return nendo_publish_still_holds(stage(offset), number) != 0;
-  }
-  bool copy_behind(std::uint64_t offset, std::size_t skipped, std::uint64_t number,
-                   std::vector<float>& floats) const noexcept {
-    if (number == 0 || !nendo_publish_holds(stage(offset), number)) return false;
-    nendo_publish_copy(floats.data(), base_ + offset + skipped, 4 * floats.size());
-    return nendo_publish_still_holds(stage(offset), number) != 0;
-  }
-  bool copy_setup(nendo_publish_setup& setup) const noexcept {
-    nendo_publish_copy(&setup, base_ + header_.setup_offset, sizeof setup);
-    return setup.generation != 0 && copy(header_.setup_offset, setup.generation, setup);
-  }
   /// Returns what `read` returns for the newest record.
   template <class Content, class Read>
   Content newest_of(Read read) const {
@@ -139,10 +98,8 @@ private:
   }
   static FrameCopy copy_of(const nendo_publish_record& record, const nendo_publish_states* states);
 
-  UniqueFd file_;
-  const char* base_;
-  std::uint64_t bytes_;
-  nendo_publish_header header_;
+  publish::MappedSegment mapped_;
+  const publish::CheckedSegment& contents_;
   std::uint64_t seen_ = 0;
 };
 
@@ -172,23 +129,12 @@ FrameCopy Segment::copy_of(const nendo_publish_record& record, const nendo_publi
 std::unique_ptr<Segment> Segment::attach(const std::string& name) {
   if (name.empty() || name.find('/') != std::string::npos)
     throw py::value_error("name: use NAME of `nendo run --to shm:NAME`");
-  const std::string path = "/dev/shm/nendo-" + name;
+  const std::string path = publish::segment_path(name);
   check_readable(path);
-  UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
-  struct stat status = {};
-  if (!file.is_open() || ::fstat(file.get(), &status) != 0)
-    raise({Errc::failed, path + ": " + std::strerror(errno)});
-  const Error refused{Errc::bad_input, path + ": is no segment of version 1"};
-  const auto bytes = static_cast<std::uint64_t>(status.st_size);
-  if (!S_ISREG(status.st_mode) || bytes < sizeof(nendo_publish_header)) raise(refused);
-  void* const base = ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, file.get(), 0);
-  if (base == MAP_FAILED) raise({Errc::failed, path + ": " + std::strerror(errno)});
-  nendo_publish_header header;
-  nendo_publish_copy(&header, base, sizeof header);
-  auto segment =
-      std::make_unique<Segment>(std::move(file), static_cast<const char*>(base), bytes, header);
-  if (!nendo_publish_is_usable(&header, bytes)) raise(refused);
-  return segment;
+  auto mapped = publish::MappedSegment::open(path);
+  if (!mapped) raise(mapped.error());
+  if (!*mapped) raise({Errc::failed, path + ": there is no such file"});
+  return std::make_unique<Segment>(**std::move(mapped));
 }
 
 py::array array_of_hands(const Segment& own) {

@@ -4,16 +4,15 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <thread>
 
-#include <time.h>
-
 #include <nendo/base/shared_name.hpp>
 #include <nendo/base/text.hpp>
+#include <nendo/base/units.hpp>
+#include <nendo/base/utc.hpp>
 
 #include "cli/cli.hpp"
 #include "ros/hand_messages.hpp"
@@ -39,26 +38,8 @@ struct Ros2Options {
   std::string prefix;
 };
 
-std::int64_t clock_ns(clockid_t clock) noexcept {
-  timespec time{};
-  ::clock_gettime(clock, &time);
-  return std::int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
-}
-
-/// Returns the nanoseconds from CLOCK_MONOTONIC to UTC. It reads both clocks at almost the same
-/// time, even if this thread loses its processor between two readings now and then.
-std::int64_t utc_offset_ns() noexcept {
-  std::int64_t offset_ns = 0;
-  std::int64_t min_passed_ns = std::numeric_limits<std::int64_t>::max();
-  for (int attempt = 0; attempt < 3; ++attempt) {
-    const std::int64_t before_ns = clock_ns(CLOCK_MONOTONIC);
-    const std::int64_t utc_ns = clock_ns(CLOCK_REALTIME);
-    const std::int64_t passed_ns = clock_ns(CLOCK_MONOTONIC) - before_ns;
-    if (passed_ns >= min_passed_ns) continue;
-    min_passed_ns = passed_ns;
-    offset_ns = utc_ns - (before_ns + passed_ns / 2);
-  }
-  return offset_ns;
+std::int64_t monotonic_ns() noexcept {
+  return std::chrono::nanoseconds(HostClock::now().time_since_epoch()).count();
 }
 
 ros::StagePose pose_of(const nendo_publish_joint& joint) {
@@ -116,12 +97,12 @@ public:
   Follower(const Ros2Options& options, Participant& participant)
       : name_(options.segment), participant_(participant), hands_(options.prefix),
         pace_(options.rate_hz), status_(options.segment) {
-    participant_.static_transforms(hands_.static_transforms(clock_ns(CLOCK_REALTIME)));
+    participant_.static_transforms(hands_.static_transforms(utc_ns(HostClock::now())));
   }
 
   Result<void> run() {
     while (!cli::stop_requested().load(std::memory_order_relaxed)) {
-      const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+      const std::int64_t now_ns = monotonic_ns();
       if (now_ns >= next_test_ns_) {
         next_test_ns_ = now_ns + between_tests_ns;
         if (const auto fine = segment_ ? leave() : attach(); !fine) return fine.error();
@@ -138,11 +119,12 @@ public:
 
 private:
   Result<void> attach() {
-    auto found = SegmentReader::attach(name_);
+    auto found = ros2::attach(name_);
     if (!found) return found.error();
     if (*found) {
       segment_.emplace(*std::move(*found));
-      next_ = std::max<std::uint64_t>(segment_->newest(), 1); // earlier ones are too old
+      // Earlier records are too old.
+      next_ = std::max<std::uint64_t>(segment_->contents().newest(), 1);
       next_status_ns_ = 0;
       cli::note("follows shm:" + name_);
     } else if (!is_waiting_) {
@@ -163,21 +145,22 @@ private:
   }
 
   void publish_new() {
-    const std::uint64_t newest = segment_->newest();
+    const publish::CheckedSegment& segment = segment_->contents();
+    const std::uint64_t newest = segment.newest();
     if (newest < next_) return;
-    if (newest - next_ >= segment_->capacity()) {
+    if (newest - next_ >= segment.header().record_slots) {
       missed_ += newest - next_;
       next_ = newest;
     }
     for (std::uint64_t left = newest - next_ + 1; left > 0; --left, ++next_) {
-      if (!segment_->read(next_, reading_)) {
+      if (!read(segment, next_, reading_)) {
         ++missed_;
         continue;
       }
       record_ = reading_;
       has_record_ = true;
-      // The clocks are compared each time, because the machine's time may be set meanwhile.
-      if (pace_.is_due(record_.record.woke_ns)) publish(record_.record.woke_ns + utc_offset_ns());
+      const std::int64_t woke_ns = record_.record.woke_ns;
+      if (pace_.is_due(woke_ns)) publish(utc_ns(HostTime(std::chrono::nanoseconds(woke_ns))));
     }
   }
 
@@ -197,11 +180,11 @@ private:
 
   void publish_status(std::int64_t now_ns) {
     next_status_ns_ = now_ns + between_statuses_ns;
-    const std::int64_t utc_ns = clock_ns(CLOCK_REALTIME);
+    const std::int64_t stamp_ns = utc_ns(HostClock::now());
     if (segment_ && has_record_)
-      status_.of_run(record_, now_ns, utc_ns, diagnostics_);
+      status_.of_run(record_, now_ns, stamp_ns, diagnostics_);
     else
-      status_.of_no_run(utc_ns, diagnostics_);
+      status_.of_no_run(stamp_ns, diagnostics_);
     participant_.diagnostics(diagnostics_);
   }
 
@@ -210,7 +193,7 @@ private:
   ros::HandMessages hands_;
   Pace pace_;
   GloveStatus status_;
-  std::optional<SegmentReader> segment_;
+  std::optional<publish::MappedSegment> segment_;
   std::uint64_t next_ = 1, published_ = 0, missed_ = 0;
   bool is_waiting_ = false, has_record_ = false;
   std::int64_t next_test_ns_ = 0, next_status_ns_ = 0;

@@ -1,7 +1,5 @@
 #include <nendo/hand/joints.hpp>
 
-#include <algorithm>
-
 namespace nendo::hand {
 namespace {
 
@@ -45,14 +43,6 @@ std::string_view name_of(Joint joint) noexcept {
 
 std::string_view name_of(Finger finger) noexcept {
   return finger_names[static_cast<std::size_t>(finger)];
-}
-
-std::optional<Joint> parent_of(Joint joint) noexcept {
-  if (joint == Joint::wrist) return std::nullopt;
-  if (joint == Joint::palm ||
-      std::find(metacarpals.begin(), metacarpals.end(), joint) != metacarpals.end())
-    return Joint::wrist;
-  return static_cast<Joint>(index_of(joint) - 1); // a finger's joints are in order
 }
 
 } // namespace nendo::hand

@@ -1,6 +1,5 @@
 #include <nendo/base/shared_name.hpp>
 
-#include <algorithm>
 #include <array>
 
 #include <fcntl.h>
@@ -11,16 +10,6 @@
 #include <nendo/base/number_in.hpp>
 
 namespace nendo {
-
-bool is_shared_name(std::string_view name) noexcept {
-  constexpr std::size_t max_characters = 64;
-  const auto is_allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-           c == '_' || c == '.';
-  };
-  return !name.empty() && name.size() <= max_characters &&
-         std::all_of(name.begin(), name.end(), is_allowed);
-}
 
 std::optional<unsigned> group_named(const std::string& name) {
   constexpr unsigned no_change = 0xFFFFFFFFU; // to chown()

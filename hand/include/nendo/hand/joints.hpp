@@ -1,6 +1,7 @@
 #pragma once
 // The joints of a hand: names and order of OpenXR's XR_EXT_hand_tracking.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -52,9 +53,6 @@ constexpr Joint joint_after(Joint joint, std::size_t steps) noexcept {
 }
 NENDO_API std::string_view name_of(Joint joint) noexcept;
 
-/// Returns the parent joint, or nullopt for the wrist, which is the root and the palm's parent.
-NENDO_API std::optional<Joint> parent_of(Joint joint) noexcept;
-
 enum class Finger : std::uint8_t { thumb, index, middle, ring, little };
 
 inline constexpr std::size_t finger_count = 5;
@@ -66,5 +64,14 @@ inline constexpr std::array<Joint, finger_count> metacarpals{
     Joint::ring_metacarpal, Joint::little_metacarpal};
 inline constexpr std::array<Joint, finger_count> fingertips{
     Joint::thumb_tip, Joint::index_tip, Joint::middle_tip, Joint::ring_tip, Joint::little_tip};
+
+/// Returns the parent joint, or nullopt for the wrist, which is the root and the palm's parent.
+constexpr std::optional<Joint> parent_of(Joint joint) noexcept {
+  if (joint == Joint::wrist) return std::nullopt;
+  if (joint == Joint::palm ||
+      std::find(metacarpals.begin(), metacarpals.end(), joint) != metacarpals.end())
+    return Joint::wrist;
+  return static_cast<Joint>(index_of(joint) - 1); // a finger's joints are in order
+}
 
 } // namespace nendo::hand

@@ -2,6 +2,8 @@
 // Names by which the programs of a machine find what one of them shares: a segment of memory, or a
 // socket. A lock decides who has a name, so that what a killed program left can be replaced.
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -16,7 +18,15 @@ namespace nendo {
 /// The rule that is_shared_name() checks, for messages.
 inline constexpr std::string_view shared_name_rule =
     "use letters, digits, '-', '_' and '.' for the name, at most 64";
-NENDO_API bool is_shared_name(std::string_view name) noexcept;
+constexpr bool is_shared_name(std::string_view name) noexcept {
+  constexpr std::size_t max_characters = 64;
+  const auto is_allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_' || c == '.';
+  };
+  return !name.empty() && name.size() <= max_characters &&
+         std::all_of(name.begin(), name.end(), is_allowed);
+}
 
 /// Returns the id of a group that the system knows by this name or number, or nullopt. May block,
 /// as on a network.
