@@ -7,40 +7,12 @@
 
 #include "openxr/application.hpp"
 #include "support/eventually.hpp"
+#include "support/mapped_file.hpp"
 #include "support/program.hpp"
 
 namespace openxr_program_test {
 
 using namespace nendo::test;
-
-namespace {
-
-/// A segment that another program writes.
-class MappedRun {
-public:
-  explicit MappedRun(const std::string& path) {
-    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    struct stat status{};
-    REQUIRE(::fstat(file, &status) == 0);
-    bytes_ = static_cast<std::size_t>(status.st_size);
-    base_ = ::mmap(nullptr, bytes_, PROT_READ, MAP_SHARED, file, 0);
-    ::close(file);
-    REQUIRE(base_ != MAP_FAILED);
-  }
-  ~MappedRun() { ::munmap(base_, bytes_); }
-  MappedRun(const MappedRun&) = delete;
-  MappedRun& operator=(const MappedRun&) = delete;
-  std::uint64_t newest() const { return nendo_publish_newest(base_); }
-  bool read(nendo_publish_record& record) const {
-    return nendo_publish_read(base_, newest(), &record, nullptr, 0) != 0;
-  }
-
-private:
-  void* base_ = nullptr;
-  std::size_t bytes_ = 0;
-};
-
-} // namespace
 
 TEST_SUITE("openxr_program") {
   TEST_CASE("an application has the hands of a run, and none after the run was killed") {
@@ -52,8 +24,9 @@ TEST_SUITE("openxr_program") {
                  (folder.path() / "shape.obj").string(), "--to", "shm:" + name});
     const std::string path = "/dev/shm/nendo-" + name;
     REQUIRE(appears(path));
-    const MappedRun segment(path);
-    REQUIRE(eventually([&] { return segment.newest() > 10; }));
+    const MappedFile segment(path);
+    const auto newest = [&] { return nendo_publish_newest(segment.base()); };
+    REQUIRE(eventually([&] { return newest() > 10; }));
     const InstanceInfo info(usual_extensions());
     OpenInstance instance(XR_NULL_HANDLE, xrGetInstanceProcAddr);
     REQUIRE(xrCreateInstance(info.get(), &instance.handle) == XR_SUCCESS);
@@ -66,10 +39,10 @@ TEST_SUITE("openxr_program") {
       float far = 1.0F;
       CHECK(eventually([&] {
         nendo_publish_record record;
-        if (!segment.read(record)) return false;
+        if (!nendo_publish_read(segment.base(), newest(), &record, nullptr, 0)) return false;
         // At the time of that record nothing is extrapolated, unless a newer one came meanwhile.
         const LocatedHand hand = session.locate(tracker, stage, record.woke_ns);
-        if (!hand.is_active || segment.newest() != record.number) return false;
+        if (!hand.is_active || newest() != record.number) return false;
         far = 0.0F;
         for (std::size_t k = 0; k < 26; ++k) {
           const float* const p = record.hands[side].joints[k].position;

@@ -6,14 +6,12 @@
 #include <vector>
 
 #include <doctest/doctest.h>
-#include <fcntl.h>
 #include <nendo_publish.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "publish/segment.hpp"
 #include "support/flow_fixtures.hpp"
+#include "support/mapped_file.hpp"
 
 namespace nendo::test {
 
@@ -44,41 +42,31 @@ inline void attach(LoopUnderTest& test, std::vector<flow::FrameSink*> sinks) {
 
 class MappedSegment {
 public:
-  explicit MappedSegment(const std::string& name) {
-    const int file = ::open(("/dev/shm/nendo-" + name).c_str(), O_RDONLY | O_CLOEXEC);
-    struct stat status{};
-    REQUIRE(::fstat(file, &status) == 0);
-    bytes_ = static_cast<std::size_t>(status.st_size);
-    base_ = ::mmap(nullptr, bytes_, PROT_READ, MAP_SHARED, file, 0);
-    ::close(file);
-    REQUIRE(base_ != MAP_FAILED);
-    REQUIRE(nendo_publish_is_usable(base_, bytes_));
+  explicit MappedSegment(const std::string& name) : file_("/dev/shm/nendo-" + name) {
+    REQUIRE(nendo_publish_is_usable(base(), file_.bytes()));
   }
-  ~MappedSegment() { ::munmap(base_, bytes_); }
-  MappedSegment(const MappedSegment&) = delete;
-  MappedSegment& operator=(const MappedSegment&) = delete;
 
-  const void* base() const { return base_; }
+  const void* base() const { return file_.base(); }
   const nendo_publish_header& header() const {
-    return *static_cast<const nendo_publish_header*>(base_);
+    return *static_cast<const nendo_publish_header*>(base());
   }
-  std::uint64_t newest() const { return nendo_publish_newest(base_); }
-  bool has_ended() const { return nendo_publish_state(base_) == NENDO_PUBLISH_ENDED; }
+  std::uint64_t newest() const { return nendo_publish_newest(base()); }
+  bool has_ended() const { return nendo_publish_state(base()) == NENDO_PUBLISH_ENDED; }
   nendo_publish_setup setup() const {
     nendo_publish_setup setup{};
-    REQUIRE(nendo_publish_read_setup(base_, &setup, nullptr, nullptr));
+    REQUIRE(nendo_publish_read_setup(base(), &setup, nullptr, nullptr));
     return setup;
   }
   /// In the model's units, 3 by #vertices.
   deform::Points rest() const {
     nendo_publish_setup setup{};
     std::vector<float> floats(std::size_t{3} * header().vertices);
-    REQUIRE(nendo_publish_read_setup(base_, &setup, nullptr, floats.data()));
+    REQUIRE(nendo_publish_read_setup(base(), &setup, nullptr, floats.data()));
     return points_of(setup, floats);
   }
   deform::Points shape(std::uint64_t number) const {
     std::vector<float> floats(std::size_t{3} * header().vertices);
-    REQUIRE(nendo_publish_read_shape(base_, number, floats.data()));
+    REQUIRE(nendo_publish_read_shape(base(), number, floats.data()));
     return points_of(setup(), floats);
   }
   /// With its fields behind it.
@@ -86,7 +74,7 @@ public:
     std::vector<std::uint64_t> words(header().record_stride / 8);
     auto* const head = reinterpret_cast<nendo_publish_record*>(words.data());
     REQUIRE(
-        nendo_publish_read(base_, number, head, head + 1, header().record_stride - sizeof *head));
+        nendo_publish_read(base(), number, head, head + 1, header().record_stride - sizeof *head));
     return words;
   }
 
@@ -100,8 +88,7 @@ private:
     return points;
   }
 
-  void* base_ = nullptr;
-  std::size_t bytes_ = 0;
+  MappedFile file_;
 };
 
 inline const nendo_publish_record& head_of(const std::vector<std::uint64_t>& words) {
