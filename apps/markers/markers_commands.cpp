@@ -192,7 +192,8 @@ void add_commands(cli::Command& program) {
   add_camera_options(tracking, track_options.camera);
   tracking.add_option("--calibration", track_options.calibration,
                       "The camera's calibration (.toml)");
-  tracking.add_option("--to", track_options.to, "Where the poses go, as ADDRESS:PORT");
+  tracking.add_option("--to", track_options.to,
+                      "Where the poses go, as PORT of this machine or ADDRESS:PORT");
   tracking.add_option("--side", track_options.side, "Track one bracelet only")
       .one_of({"left", "right"});
 }

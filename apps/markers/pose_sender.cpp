@@ -5,9 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <memory>
-
-#include <netdb.h>
 
 namespace nendo::markers {
 namespace {
@@ -50,36 +47,20 @@ std::string pose_packet(Side side, const StagePose& pose,
 }
 
 Result<PoseSender> PoseSender::open(std::string_view to) {
-  const Error wrong{Errc::usage, "--to " + std::string(to) +
-                                     ": use ADDRESS:PORT with a numeric address, as "
-                                     "127.0.0.1:9000 or [::1]:9000"};
-  const std::size_t colon = to.rfind(':');
-  if (colon == std::string_view::npos) return wrong;
-  std::string_view host = to.substr(0, colon);
-  const bool bracketed = host.size() > 2 && host.front() == '[' && host.back() == ']';
-  if (bracketed) host = host.substr(1, host.size() - 2);
-  addrinfo wanted{};
-  wanted.ai_family = bracketed ? AF_INET6 : AF_INET;
-  wanted.ai_socktype = SOCK_DGRAM;
-  wanted.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
-  addrinfo* found = nullptr;
-  const std::string port(to.substr(colon + 1));
-  if (host.empty() || port.empty() ||
-      ::getaddrinfo(std::string(host).c_str(), port.c_str(), &wanted, &found) != 0)
-    return wrong;
-  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> addresses(found, &::freeaddrinfo);
+  const auto endpoint = parse_endpoint(to);
+  if (!endpoint)
+    return Error{Errc::usage, "--to " + std::string(to) + ": " + endpoint.error().message};
   PoseSender sender;
-  std::memcpy(&sender.address_, found->ai_addr, found->ai_addrlen);
-  sender.length_ = found->ai_addrlen;
-  sender.socket_ = UniqueFd(::socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  sender.to_ = endpoint->socket_address();
+  sender.socket_ =
+      UniqueFd(::socket(sender.to_.address.any.sa_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (!sender.socket_.is_open())
     return Error{Errc::failed, "--to " + std::string(to) + ": no socket: " + std::strerror(errno)};
   return sender;
 }
 
 void PoseSender::send(const std::string& packet) const noexcept {
-  ::sendto(socket_.get(), packet.data(), packet.size(), MSG_DONTWAIT,
-           reinterpret_cast<const sockaddr*>(&address_), length_);
+  ::sendto(socket_.get(), packet.data(), packet.size(), MSG_DONTWAIT, &to_.address.any, to_.length);
 }
 
 } // namespace nendo::markers

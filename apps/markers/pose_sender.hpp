@@ -5,9 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include <netinet/in.h>
-#include <sys/socket.h>
-
+#include <nendo/base/endpoint.hpp>
 #include <nendo/base/result.hpp>
 #include <nendo/base/side.hpp>
 #include <nendo/base/unique_fd.hpp>
@@ -23,16 +21,14 @@ std::string pose_packet(Side side, const StagePose& pose,
 
 class PoseSender {
 public:
-  /// `to` is ADDRESS:PORT, with a numeric address; [ADDRESS]:PORT for IPv6. Errors: usage; failed
-  /// (no socket).
+  /// `to` is an endpoint, see parse_endpoint(). Errors: usage; failed (no socket).
   static Result<PoseSender> open(std::string_view to);
   /// Sends one datagram. One that the system refuses is lost.
   void send(const std::string& packet) const noexcept;
 
 private:
   UniqueFd socket_;
-  sockaddr_storage address_{};
-  socklen_t length_ = 0;
+  SocketAddress to_;
 };
 
 } // namespace nendo::markers

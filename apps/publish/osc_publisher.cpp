@@ -19,7 +19,7 @@ constexpr auto period = std::chrono::milliseconds(1);
 
 Result<void> OscPublisher::open() {
   const std::string place = "--to " + name_;
-  const int family = target_.address.any.sa_family;
+  const int family = to_.address.any.sa_family;
   UniqueFd socket(::socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   // A socket that is connected would get errors of ports without a listener, and count losses
   // there.
@@ -27,7 +27,7 @@ Result<void> OscPublisher::open() {
   if (!socket.is_open() || !probe.is_open())
     return system_error(place, "no socket",
                         "a service needs RestrictAddressFamilies=AF_INET AF_INET6");
-  if (::connect(probe.get(), &target_.address.any, target_.length) != 0)
+  if (::connect(probe.get(), &to_.address.any, to_.length) != 0)
     return system_error(place, "no way to that address", "see ip route");
   socket_ = std::move(socket);
   return {};
@@ -123,7 +123,7 @@ void OscPublisher::send(const Record& record) {
 
 void OscPublisher::send_datagram(std::span<const std::byte> datagram) noexcept {
   const ssize_t sent = ::sendto(socket_.get(), datagram.data(), datagram.size(), MSG_DONTWAIT,
-                                &target_.address.any, target_.length);
+                                &to_.address.any, to_.length);
   if (sent < 0) {
     ++counts_.refused;
     return;

@@ -37,7 +37,7 @@ class OscPublisher final : public flow::FrameSink {
 public:
   /// name: the target as the user wrote it, for error messages.
   OscPublisher(std::string name, const OscTarget& target)
-      : name_(std::move(name)), target_(target) {}
+      : name_(std::move(name)), target_(target), to_(target.endpoint.socket_address()) {}
   ~OscPublisher() override { end(); }
 
   /// Begins to send. To be called before each loop's first tick, while no loop runs. The first call
@@ -65,6 +65,7 @@ private:
 
   std::string name_;
   OscTarget target_;
+  SocketAddress to_;
   UniqueFd socket_;
   // Used by the loop's thread.
   std::unique_ptr<AtomicWord[]> memory_;

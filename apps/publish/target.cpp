@@ -2,9 +2,6 @@
 
 #include <cstring>
 
-#include <netdb.h>
-
-#include <nendo/base/number_in.hpp>
 #include <nendo/base/shared_name.hpp>
 #include <nendo/base/text.hpp>
 
@@ -31,34 +28,6 @@ Result<Target> parse_segment(std::string_view text, std::string_view rest) {
   return Target(target);
 }
 
-Result<void> find_address(std::string_view text, std::string_view place, OscTarget& target) {
-  const std::size_t colon = place.rfind(':');
-  const std::string_view port = colon == std::string_view::npos ? place : place.substr(colon + 1);
-  std::string host =
-      colon == std::string_view::npos ? "127.0.0.1" : std::string(place.substr(0, colon));
-  const auto number = number_in<std::uint16_t>(port);
-  if (!number || *number == 0)
-    return wrong(text, "use PORT, ADDRESS:PORT or [ADDRESS]:PORT after the colon, with a port of 1 "
-                       "to 65535");
-  const bool bracketed = host.size() > 2 && host.front() == '[' && host.back() == ']';
-  if (bracketed) host = host.substr(1, host.size() - 2);
-  addrinfo wanted{};
-  wanted.ai_family = bracketed ? AF_INET6 : AF_INET;
-  wanted.ai_socktype = SOCK_DGRAM;
-  wanted.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
-  addrinfo* found = nullptr;
-  if (::getaddrinfo(host.c_str(), std::string(port).c_str(), &wanted, &found) != 0)
-    return wrong(text, "use a numeric address; one of IPv6 in brackets: [::1]:9000");
-  const bool fits = found->ai_addrlen <= sizeof target.address;
-  if (fits) {
-    std::memcpy(&target.address, found->ai_addr, found->ai_addrlen);
-    target.length = found->ai_addrlen;
-  }
-  ::freeaddrinfo(found);
-  if (!fits) return wrong(text, "use an address of IPv4 or IPv6");
-  return {};
-}
-
 Result<Target> parse_osc(std::string_view text, OscFormat format, std::string_view rest) {
   OscTarget target;
   target.format = format;
@@ -72,8 +41,9 @@ Result<Target> parse_osc(std::string_view text, OscFormat format, std::string_vi
     if (!target.rate_hz || *target.rate_hz < 0.1 || *target.rate_hz > 10'000.0)
       return wrong(text, "use a rate of 0.1 to 10000 Hz");
   }
-  if (const auto found = find_address(text, rest.substr(0, mark), target); !found)
-    return found.error();
+  auto endpoint = parse_endpoint(rest.substr(0, mark));
+  if (!endpoint) return wrong(text, endpoint.error().message);
+  target.endpoint = *std::move(endpoint);
   return Target(target);
 }
 
@@ -99,8 +69,8 @@ bool is_same_place(const Target& one, const Target& other) noexcept {
   if (one.index() != other.index()) return false;
   if (const auto* segment = std::get_if<SegmentTarget>(&one))
     return segment->name == std::get_if<SegmentTarget>(&other)->name;
-  const auto& here = *std::get_if<OscTarget>(&one);
-  const auto& there = *std::get_if<OscTarget>(&other);
+  const SocketAddress here = std::get_if<OscTarget>(&one)->endpoint.socket_address();
+  const SocketAddress there = std::get_if<OscTarget>(&other)->endpoint.socket_address();
   return here.length == there.length &&
          std::memcmp(&here.address, &there.address, here.length) == 0;
 }

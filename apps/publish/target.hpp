@@ -6,9 +6,7 @@
 #include <string_view>
 #include <variant>
 
-#include <netinet/in.h>
-#include <sys/socket.h>
-
+#include <nendo/base/endpoint.hpp>
 #include <nendo/base/result.hpp>
 
 namespace nendo::publish {
@@ -21,17 +19,10 @@ struct SegmentTarget {
 /// nendo: messages of this project, which apps/publish/OSC.md lists. vmc: the bones of an avatar.
 enum class OscFormat { nendo, vmc };
 
-/// A numeric address and a port, as sendto() takes them.
 struct OscTarget {
   OscFormat format = OscFormat::nendo;
   std::optional<double> rate_hz; ///< max; nothing: each tick
-  union {
-    sockaddr_storage whole; ///< all zeros at first
-    sockaddr any;
-    sockaddr_in v4;
-    sockaddr_in6 v6;
-  } address{};
-  socklen_t length = 0;
+  Endpoint endpoint;
 };
 
 using Target = std::variant<SegmentTarget, OscTarget>;

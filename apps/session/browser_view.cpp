@@ -111,8 +111,8 @@ private:
 
 Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoint,
                                                        const std::string& mesh) {
-  const auto where = web::parse_endpoint(endpoint);
-  if (!where) return where.error();
+  const auto where = parse_endpoint(endpoint, 0);
+  if (!where) return Error{Errc::usage, "--web " + endpoint + ": " + where.error().message};
   auto server = web::Server::open(*where);
   if (!server) return server.error();
   cli::note("open in a browser: " + (*server)->url());

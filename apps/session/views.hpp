@@ -25,7 +25,7 @@ Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions& options, con
 class BrowserView : public Sink, public Observer {};
 
 /// Opens the server for --web, and prints its address on standard error. Errors: those of
-/// web::parse_endpoint() and web::Server::open(). The view's begin() and prepare() return bad_input
+/// parse_endpoint() and web::Server::open(). The view's begin() and prepare() return bad_input
 /// for a model with more vertices than browsers take.
 Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoint,
                                                        const std::string& mesh);

@@ -1,11 +1,13 @@
 #include "web/http_request.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include <nendo/base/endings.hpp>
+#include <nendo/base/endpoint.hpp>
+#include <nendo/base/number_in.hpp>
 #include <nendo/base/text.hpp>
 
-#include "web/endpoint.hpp"
 #include "web/foxglove_words.hpp"
 #include "web/web_socket.hpp"
 
@@ -171,6 +173,16 @@ bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept {
   for (std::size_t at = 0; at < a.size(); ++at)
     different |= static_cast<unsigned>(a[at]) ^ static_cast<unsigned>(b[at]);
   return different == 0;
+}
+
+bool is_address_or_localhost(std::string_view authority) {
+  static constexpr std::string_view localhost = "localhost:";
+  const auto is_one_with_port = [](std::string_view text) {
+    if (text.starts_with(localhost))
+      return number_in<std::uint16_t>(text.substr(localhost.size())).has_value();
+    return text.find(':') != std::string_view::npos && bool(parse_endpoint(text, 0));
+  };
+  return is_one_with_port(authority) || is_one_with_port(std::string(authority) + ":80");
 }
 
 Admission admit(const HttpRequest& request, std::string_view token) noexcept {

@@ -57,6 +57,11 @@ struct Admission {
 /// must offer one of foxglove_protocols.
 Admission admit(const HttpRequest& request, std::string_view token) noexcept;
 
+/// Returns whether the host of an authority ("localhost:8080", "[::1]", "192.168.1.5") is a numeric
+/// address or localhost. A hostile site can resolve its own name to this machine (DNS rebinding),
+/// but none of these.
+bool is_address_or_localhost(std::string_view authority);
+
 /// Compares two strings in a time that depends only on their lengths.
 bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept;
 

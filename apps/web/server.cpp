@@ -32,8 +32,8 @@ SharedBytes shared_message(std::vector<std::byte> message) {
 
 Result<std::unique_ptr<Server>> Server::open(const Endpoint& endpoint, ServerLimits limits) {
   Endpoint where = endpoint;
-  auto listener = listen_at(where);
-  if (!listener) return listener.error();
+  auto listener = open_at(where, SOCK_STREAM);
+  if (!listener) return Error{listener.error().code, "--web " + listener.error().message};
   std::string token = random_hex(16);
   UniqueFd waker(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
   if (token.empty() || !waker.is_open())

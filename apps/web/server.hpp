@@ -12,11 +12,11 @@
 #include <string_view>
 #include <vector>
 
+#include <nendo/base/endpoint.hpp>
 #include <nendo/base/result.hpp>
 #include <nendo/flow/command.hpp>
 
 #include "web/client_commands.hpp"
-#include "web/endpoint.hpp"
 #include "web/frame_stream.hpp"
 #include "web/model_message.hpp"
 

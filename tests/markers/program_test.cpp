@@ -131,7 +131,7 @@ TEST_SUITE("markers_program") {
     };
     for (const Case& wrong :
          {Case{"--camera none.avi", 3, "no video"}, Case{"--camera 987", 3, "no such camera"},
-          Case{"--to localhost:9000", 2, "numeric address"}, Case{"--to 9000", 2, "ADDRESS:PORT"},
+          Case{"--to localhost:9000", 2, "numeric address"}, Case{"--to 0", 2, "ADDRESS:PORT"},
           Case{"--side up", 2, "--side"}, Case{"print --out a.png", 2, ".svg"},
           Case{"calibrate --camera none.avi", 3, "no video"}}) {
       CAPTURE(wrong.arguments);

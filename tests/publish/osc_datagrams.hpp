@@ -20,14 +20,10 @@ class OscReceiver {
 public:
   explicit OscReceiver(int family = AF_INET)
       : socket_(::socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-    publish::OscTarget any;
-    any.length = family == AF_INET ? sizeof any.address.v4 : sizeof any.address.v6;
-    any.address.any.sa_family = static_cast<sa_family_t>(family);
-    if (family == AF_INET) any.address.v4.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    if (family == AF_INET6) any.address.v6.sin6_addr = in6addr_loopback;
-    is_bound_ = ::bind(socket_.get(), &any.address.any, any.length) == 0;
-    target_ = any;
-    ::getsockname(socket_.get(), &target_.address.any, &target_.length);
+    SocketAddress address = Endpoint{family == AF_INET ? "127.0.0.1" : "::1"}.socket_address();
+    is_bound_ = ::bind(socket_.get(), &address.address.any, address.length) == 0;
+    ::getsockname(socket_.get(), &address.address.any, &address.length);
+    target_.endpoint = endpoint_of(address);
     const int bytes = 4 << 20;
     ::setsockopt(socket_.get(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
   }

@@ -163,10 +163,7 @@ TEST_SUITE("osc_publisher") {
 
   TEST_CASE("an address to which there is no way is an error before the first tick") {
     OscTarget target;
-    target.length = sizeof target.address.v4;
-    target.address.v4.sin_family = AF_INET;
-    target.address.v4.sin_port = htons(9000);
-    target.address.v4.sin_addr.s_addr = INADDR_BROADCAST;
+    target.endpoint = {"255.255.255.255", 9000};
     LoopUnderTest test(flow::Mode::type1, {.rings_of_ball = 8});
     OscPublisher sender("osc:255.255.255.255:9000", target);
     const auto begun = sender.begin(test::outline_of(test));

@@ -21,10 +21,7 @@ namespace {
 
 OscTarget port_9() {
   OscTarget target;
-  target.length = sizeof target.address.v4;
-  target.address.v4.sin_family = AF_INET;
-  target.address.v4.sin_port = htons(9);
-  target.address.v4.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  target.endpoint.port = 9;
   return target;
 }
 

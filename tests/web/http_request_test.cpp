@@ -76,6 +76,18 @@ TEST_SUITE("http_request") {
     CHECK(status_of(endless.substr(1)) == 0);
     CHECK(status_of(endless) == 431);
   }
+
+  TEST_CASE("a host is an address or localhost, and no name of anybody's") {
+    for (const auto* fine : {"localhost", "localhost:1", "127.0.0.1:8080", "192.168.1.5", "[::1]",
+                             "[::1]:9", "[fe80::1:2]:80"})
+      CHECK(is_address_or_localhost(fine));
+    for (const auto* wrong : {"", "evil.example", "evil.example:8080", "localhost.evil.example",
+                              "127.0.0.1.evil.example", "[evil.example]", "::1", "localhost:",
+                              "localhost:99999", "[::1]x", "[localhost]", "2130706433", "127.1"}) {
+      CAPTURE(wrong);
+      CHECK_FALSE(is_address_or_localhost(wrong));
+    }
+  }
 }
 
 } // namespace http_request_test

@@ -25,7 +25,7 @@ namespace nendo::driver::osc {
 namespace {
 
 struct OscOptions {
-  UdpEndpoint endpoint;
+  Endpoint endpoint;
   PairAddresses pair; ///< empty addresses: none
   std::vector<std::uint16_t> stations;
 };
@@ -43,9 +43,9 @@ public:
                                IdentifyReason reason, const ReplyDeadline& /*limit*/) override {
     if (reason == IdentifyReason::reviving) explain_silence(source);
     TrackerInfo info;
-    info.model = "OSC at " + to_string(options_.endpoint);
+    info.model = "OSC at " + options_.endpoint.authority();
     info.stations = options_.stations;
-    info.facts = {{"listens_at", to_string(options_.endpoint)}};
+    info.facts = {{"listens_at", options_.endpoint.authority()}};
     for (const std::uint16_t station : options_.stations)
       info.facts.push_back({station == left_station ? "left_address" : "right_address",
                             std::string(address_of(station))});
@@ -184,9 +184,9 @@ Result<std::uint16_t> take_osc_side(DeviceSpec& spec) {
     const bool is_ipv6 = listen.mapped().find(':') != std::string::npos;
     target = (is_ipv6 ? "[" + listen.mapped() + "]" : listen.mapped()) + ":" + target;
   }
-  const auto endpoint = parse_udp_endpoint(target);
+  const auto endpoint = parse_endpoint(target);
   if (!endpoint) return wrong(spec, endpoint.error().message);
-  spec.target = to_string(*endpoint); // one spelling, so that both hands share a socket
+  spec.target = endpoint->authority(); // one spelling, so that both hands share a socket
   return *side == Side::left ? left_station : right_station;
 }
 
@@ -194,7 +194,7 @@ Result<std::unique_ptr<Tracker>> open_osc(const DeviceSpec& spec,
                                           std::span<const std::uint16_t> stations) {
   if (const auto known = allow_options(spec, {"position", "rotation"}); !known)
     return known.error();
-  const auto endpoint = parse_udp_endpoint(spec.target);
+  const auto endpoint = parse_endpoint(spec.target);
   if (!endpoint) return wrong(spec, endpoint.error().message);
   const auto pair = pair_option(spec, stations);
   if (!pair) return pair.error();

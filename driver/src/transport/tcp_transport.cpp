@@ -86,14 +86,13 @@ Result<std::vector<SocketAddress>> resolve(const std::string& host, std::uint16_
 
 /// Returns 0 and the connected socket, or an error number.
 int connect_socket(const SocketAddress& to, HostTime deadline, UniqueFd& connected) {
-  UniqueFd fd(::socket(to.address.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  UniqueFd fd(::socket(to.address.any.sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!fd.is_open()) return errno;
   const int on = 1;
   ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   ::setsockopt(fd.get(), IPPROTO_TCP, TCP_USER_TIMEOUT, &max_unconfirmed_ms,
                sizeof max_unconfirmed_ms);
-  const auto* const address = reinterpret_cast<const sockaddr*>(&to.address);
-  if (::connect(fd.get(), address, to.length) != 0) {
+  if (::connect(fd.get(), &to.address.any, to.length) != 0) {
     if (errno != EINPROGRESS) return errno;
     if (wait_fd(fd.get(), POLLOUT, deadline) == IoStatus::timeout) return ETIMEDOUT;
     int error = 0;
@@ -126,8 +125,7 @@ TcpConnector::TcpConnector(std::string host, std::uint16_t port)
     : host_(std::move(host)), port_(port) {}
 
 std::string TcpConnector::name() const {
-  const bool has_colons = host_.find(':') != std::string::npos;
-  return (has_colons ? "[" + host_ + "]" : host_) + ":" + std::to_string(port_);
+  return Endpoint{host_, port_}.authority();
 }
 
 Result<std::unique_ptr<Transport>> TcpConnector::connect() {

@@ -6,19 +6,12 @@
 #include <string>
 #include <vector>
 
-#include <sys/socket.h>
-
+#include <nendo/base/endpoint.hpp>
 #include <nendo/base/result.hpp>
 
 #include "transport/transport.hpp"
 
 namespace nendo::driver {
-
-/// An address of IPv4 or IPv6, with its port.
-struct SocketAddress {
-  sockaddr_storage address{};
-  socklen_t length = 0;
-};
 
 /// Connects to one server, again after each loss. One thread at a time uses it, as it uses the
 /// transports, see transport_of_socket(). What is sent leaves at once (TCP_NODELAY). A server that

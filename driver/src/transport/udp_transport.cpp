@@ -5,16 +5,12 @@
 #include <chrono>
 #include <cstddef>
 #include <span>
-#include <system_error>
 #include <thread>
 #include <utility>
 
-#include <netdb.h>
-#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 
-#include <nendo/base/number_in.hpp>
 #include <nendo/base/unique_fd.hpp>
 #include <nendo/base/units.hpp>
 
@@ -25,44 +21,6 @@ using namespace std::chrono_literals;
 
 constexpr auto rate_window_of_reads = 10ms;
 constexpr int max_reads_per_window = max_datagrams_per_s / 100;
-
-struct AddressFreer {
-  void operator()(addrinfo* list) const noexcept { ::freeaddrinfo(list); }
-};
-using AddressHandle = std::unique_ptr<addrinfo, AddressFreer>;
-
-bool is_ipv6(const UdpEndpoint& endpoint) noexcept {
-  return endpoint.address.find(':') != std::string::npos;
-}
-
-/// Returns the endpoint as bind() takes it, or null if the address is not numeric.
-AddressHandle numeric_address(const UdpEndpoint& endpoint) {
-  addrinfo wanted{};
-  wanted.ai_family = is_ipv6(endpoint) ? AF_INET6 : AF_INET;
-  wanted.ai_socktype = SOCK_DGRAM;
-  wanted.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
-  addrinfo* found = nullptr;
-  const std::string port = std::to_string(endpoint.port);
-  if (::getaddrinfo(endpoint.address.c_str(), port.c_str(), &wanted, &found) != 0) return nullptr;
-  return AddressHandle(found);
-}
-
-Error cannot_listen(const UdpEndpoint& endpoint, int error_number) {
-  const std::string at = "port " + to_string(endpoint);
-  switch (error_number) {
-  case EADDRINUSE:
-    return {Errc::no_device, at + " is in use by another program, or by another tracker of this "
-                                  "one; choose another port"};
-  case EADDRNOTAVAIL:
-    return {Errc::no_device, at + " is not of this machine; `ip address` lists its addresses"};
-  case EACCES:
-    return {Errc::no_permission, at + ": ports below 1024 need rights; choose one above"};
-  default:
-    return {Errc::no_device, at + " cannot be opened (" +
-                                 std::generic_category().message(error_number) +
-                                 "); choose another address or port"};
-  }
-}
 
 class UdpTransport final : public Transport {
 public:
@@ -123,40 +81,11 @@ private:
 
 } // namespace
 
-Result<UdpEndpoint> parse_udp_endpoint(std::string_view text) {
-  const Error wrong{Errc::usage, "use PORT or ADDRESS:PORT, with a numeric address and a port of 1 "
-                                 "to 65535, as 9000, 0.0.0.0:9000 or [::1]:9000"};
-  const std::size_t colon = text.rfind(':');
-  const bool has_address = colon != std::string_view::npos;
-  const auto port = number_in<std::uint16_t>(has_address ? text.substr(colon + 1) : text);
-  if (!port || *port == 0) return wrong;
-  UdpEndpoint endpoint;
-  endpoint.port = *port;
-  if (!has_address) return endpoint;
-  std::string_view address = text.substr(0, colon);
-  const bool bracketed = address.size() > 2 && address.front() == '[' && address.back() == ']';
-  if (bracketed) address = address.substr(1, address.size() - 2);
-  endpoint.address = address;
-  if (address.empty() || bracketed != is_ipv6(endpoint) || !numeric_address(endpoint)) return wrong;
-  return endpoint;
-}
-
-std::string to_string(const UdpEndpoint& endpoint) {
-  const std::string host = is_ipv6(endpoint) ? "[" + endpoint.address + "]" : endpoint.address;
-  return host + ":" + std::to_string(endpoint.port);
-}
-
-Result<std::unique_ptr<Transport>> open_udp(const UdpEndpoint& endpoint) {
-  const AddressHandle address = numeric_address(endpoint);
-  if (!address) return cannot_listen(endpoint, EADDRNOTAVAIL);
-  // Without SO_REUSEADDR, which would let another program take the datagrams.
-  UniqueFd socket(::socket(address->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  if (!socket.is_open()) return cannot_listen(endpoint, errno);
-  const int yes = 1; // [::] does not include IPv4
-  if (is_ipv6(endpoint)) ::setsockopt(socket.get(), IPPROTO_IPV6, IPV6_V6ONLY, &yes, sizeof yes);
-  if (::bind(socket.get(), address->ai_addr, address->ai_addrlen) != 0)
-    return cannot_listen(endpoint, errno);
-  return std::unique_ptr<Transport>(std::make_unique<UdpTransport>(std::move(socket)));
+Result<std::unique_ptr<Transport>> open_udp(Endpoint endpoint) {
+  auto socket = open_at(endpoint, SOCK_DGRAM);
+  if (socket) return std::unique_ptr<Transport>(std::make_unique<UdpTransport>(*std::move(socket)));
+  const bool may_not = socket.error().code == Errc::no_permission;
+  return Error{may_not ? Errc::no_permission : Errc::no_device, "port " + socket.error().message};
 }
 
 } // namespace nendo::driver
