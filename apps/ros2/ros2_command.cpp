@@ -75,23 +75,6 @@ private:
   std::size_t count_ = 0;
 };
 
-/// Lets at most one record per period pass.
-class Pace {
-public:
-  explicit Pace(std::optional<double> rate_hz)
-      : period_ns_(rate_hz ? static_cast<std::int64_t>(1e9 / *rate_hz) : 0) {}
-  bool is_due(std::int64_t time_ns) noexcept {
-    if (period_ns_ == 0) return true;
-    if (time_ns < due_ns_) return false;
-    due_ns_ = std::max(due_ns_ + period_ns_, time_ns); // keeps the rate, but catches up nothing
-    return true;
-  }
-
-private:
-  std::int64_t period_ns_;
-  std::int64_t due_ns_ = 0;
-};
-
 class Follower {
 public:
   Follower(const Ros2Options& options, Participant& participant)
@@ -191,7 +174,7 @@ private:
   std::string name_;
   Participant& participant_;
   ros::HandMessages hands_;
-  Pace pace_;
+  publish::Pace pace_;
   GloveStatus status_;
   std::optional<publish::MappedSegment> segment_;
   std::uint64_t next_ = 1, published_ = 0, missed_ = 0;

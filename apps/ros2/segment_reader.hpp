@@ -7,15 +7,12 @@
 
 #include <nendo/base/result.hpp>
 
+#include "publish/hands_record.hpp"
 #include "publish/mapped_segment.hpp"
 
 namespace nendo::ros2 {
 
-/// One tick of a run.
-struct HandsRecord {
-  nendo_publish_record record{};
-  nendo_publish_states states{}; ///< zeros if the run is older than version 1.2
-};
+using publish::HandsRecord;
 
 /// Returns the segment of a run that lives, or nullopt if no run publishes under that name now.
 /// Errors: those of MappedSegment::open().

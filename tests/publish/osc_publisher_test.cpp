@@ -107,6 +107,25 @@ TEST_SUITE("osc_publisher") {
     CHECK(sender.counts().skipped >= 48);
   }
 
+  TEST_CASE(
+      "a rate is kept while ticks are early and late, and nothing is caught up after a pause") {
+    constexpr std::int64_t tick_ns = 1'000'000'000 / 90;
+    Pace pace(30.0);
+    int passed = 0;
+    std::int64_t time_ns = 77 * tick_ns;
+    for (int tick = 0; tick < 900; ++tick, time_ns += tick_ns)
+      passed += pace.is_due(time_ns + (tick % 2 == 0 ? 400'000 : -400'000)) ? 1 : 0;
+    CHECK(passed >= 295);
+    CHECK(passed <= 301);
+    time_ns += 100 * tick_ns;
+    CHECK(pace.is_due(time_ns));
+    CHECK_FALSE(pace.is_due(time_ns + 1));
+    CHECK(pace.is_due(time_ns + 3 * tick_ns + 1'000'000));
+    Pace all({});
+    CHECK(all.is_due(5));
+    CHECK(all.is_due(5));
+  }
+
   TEST_CASE("an avatar gets 16 bones of each hand, and nothing that is no float") {
     OscReceiver receiver;
     LoopUnderTest test(flow::Mode::type1, {.rings_of_ball = 8});
