@@ -25,15 +25,23 @@ struct OscTarget {
   Endpoint endpoint;
 };
 
-using Target = std::variant<SegmentTarget, OscTarget>;
+/// The endpoint at which a VRPN server listens.
+struct VrpnTarget {
+  std::optional<double> rate_hz; ///< max; nothing: each tick
+  Endpoint endpoint;
+};
+
+using Target = std::variant<SegmentTarget, OscTarget, VrpnTarget>;
 
 /// Parses `shm`, `shm:NAME` or `shm:NAME?group=GROUP`; or `osc:PORT` (of this machine),
 /// `osc:ADDRESS:PORT` with a numeric address, or `osc:[ADDRESS]:PORT` with an IPv6 address, all of
-/// them also with `?rate=HZ`; or the same with `vmc`. It looks up only the group. Error: usage, in
+/// them also with `?rate=HZ`; or the same with `vmc` or `vrpn`; or `vrpn`, which is VRPN's port of
+/// this machine. It looks up only the group. Error: usage, in
 /// a message without the name of the option.
 Result<Target> parse_target(std::string_view text);
 
-/// Returns whether both are the same segment, or the same address and port, whatever is sent there.
+/// Returns whether both are the same segment, or the same address and port to which something is
+/// sent or at which a server listens.
 bool is_same_place(const Target& one, const Target& other) noexcept;
 
 } // namespace nendo::publish

@@ -100,6 +100,24 @@ private:
   publish::OscPublisher publisher_;
 };
 
+class VrpnSink final : public PublishingSink {
+public:
+  VrpnSink(std::string text, const publish::VrpnTarget& target)
+      : text_(std::move(text)), publisher_(text_, target) {}
+
+  Result<void> begin(const LoopStart&) override { return publisher_.begin(); }
+  Result<void> prepare(const flow::ModelVersion&) override { return {}; } // it has no vertices
+  void show(const flow::Frame& frame) noexcept override { publisher_.show(frame); }
+  PublishedTo end() override {
+    publisher_.end();
+    return {text_, publisher_.counts()};
+  }
+
+private:
+  std::string text_;
+  publish::VrpnPublisher publisher_;
+};
+
 } // namespace
 
 void add_publish_option(cli::Command& command, std::vector<std::string>& targets) {
@@ -108,7 +126,8 @@ void add_publish_option(cli::Command& command, std::vector<std::string>& targets
                   "Pass every tick to other programs: shm:NAME (hands, CSRBF update and vertices "
                   "in /dev/shm/nendo-NAME; ?group=GROUP lets a group read it), "
                   "osc:[ADDRESS:]PORT (hands as OSC messages), vmc:[ADDRESS:]PORT (bones of an "
-                  "avatar, by the VMC protocol); both with ?rate=HZ. May be repeated")
+                  "avatar, by the VMC protocol), vrpn[:[ADDRESS:]PORT] (a VRPN server); all three "
+                  "with ?rate=HZ. May be repeated")
       .once_each("TARGET");
 }
 
@@ -131,6 +150,8 @@ publish_to(const std::vector<std::string>& targets) {
       sinks.push_back(std::make_unique<SegmentSink>(text, *segment));
     } else if (const auto* osc = std::get_if<publish::OscTarget>(&*target)) {
       sinks.push_back(std::make_unique<OscSink>(text, *osc));
+    } else if (const auto* vrpn = std::get_if<publish::VrpnTarget>(&*target)) {
+      sinks.push_back(std::make_unique<VrpnSink>(text, *vrpn));
     }
   }
   return sinks;

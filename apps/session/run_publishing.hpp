@@ -9,6 +9,7 @@
 #include "cli/command.hpp"
 #include "publish/osc_publisher.hpp"
 #include "publish/segment.hpp"
+#include "publish/vrpn_publisher.hpp"
 #include "session/sink.hpp"
 
 namespace nendo::session {
@@ -16,7 +17,7 @@ namespace nendo::session {
 /// The result of one --to.
 struct PublishedTo {
   std::string target; ///< the option's value
-  std::variant<publish::SegmentCounts, publish::OscCounts> counts{};
+  std::variant<publish::SegmentCounts, publish::OscCounts, publish::VrpnCounts> counts{};
 };
 
 /// Publishes to one target.

@@ -261,6 +261,12 @@ void print_published(const RunOutcome& outcome) {
                 fmt::format("{}, {} of {} ticks, {} datagrams, {} refused, {} ticks lost",
                             to.target, sent->sent, sent->records, sent->datagrams, sent->refused,
                             sent->lost));
+    if (const auto* served = std::get_if<publish::VrpnCounts>(&to.counts))
+      print_row("published",
+                fmt::format("{}, {} of {} ticks, {} clients, {} refused, {} ticks missed by slow "
+                            "clients, {} lost",
+                            to.target, served->sent, served->records, served->clients,
+                            served->refused, served->missed, served->lost));
   }
 }
 

@@ -136,6 +136,14 @@ ordered_json published_json(const RunOutcome& outcome) {
                       {"skipped_records", sent->skipped},
                       {"lost_records", sent->lost},
                       {"refused_datagrams", sent->refused}});
+    if (const auto* served = std::get_if<publish::VrpnCounts>(&to.counts))
+      list.push_back({{"target", to.target},
+                      {"records", served->records},
+                      {"skipped_records", served->skipped},
+                      {"lost_records", served->lost},
+                      {"clients", served->clients},
+                      {"refused_clients", served->refused},
+                      {"missed_records", served->missed}});
   }
   return list;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <list>
 #include <map>
 #include <set>
 
@@ -9,6 +10,8 @@
 #include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <sys/file.h>
+
+#include <nendo/base/endpoint.hpp>
 
 #include "support/program.hpp"
 #include "support/shell.hpp"
@@ -137,6 +140,17 @@ private:
   pid_t id_;
 };
 
+/// A port of TCP and UDP that was free just now.
+std::string free_port() {
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    nendo::Endpoint endpoint;
+    const auto stream = nendo::open_at(endpoint, SOCK_STREAM);
+    if (stream && nendo::open_at(endpoint, SOCK_DGRAM)) return std::to_string(endpoint.port);
+  }
+  FAIL("no port");
+  return {};
+}
+
 /// Where the index fingertips were in each tick, by number and side.
 using Tips = std::map<std::pair<std::uint64_t, std::string>, std::vector<double>>;
 
@@ -233,6 +247,64 @@ TEST_SUITE("publish_program") {
       if (mode == "type1") CHECK(furthest(read, written) < 1e-5);
       if (mode == "type2") CHECK(furthest(read, written) < 0.5 * furthest(written, rest));
     }
+  }
+
+  TEST_CASE(
+      "clients of VRPN get the hands of the segment at its rate, also if another one stalls") {
+    const TemporaryFolder folder;
+    const std::string name = name_for("vrpn");
+    const std::string port = free_port();
+    Program run(run_of(folder, "0", {"--to", "shm:" + name, "--to", "vrpn:" + port}));
+    REQUIRE(appears(segment_path(name)));
+    const std::string client = "python3 -u " NENDO_VRPN_CLIENT " " + port;
+    Reader stalled(folder, "stalled", client);
+    REQUIRE(stalled.says_lines(1));
+    stalled.signal(SIGSTOP);
+    Reader all(folder, "all", "python3 -u " NENDO_READ_SEGMENT " " + name);
+    REQUIRE(all.says_lines(20));
+    // 54 messages each tick; the second one asks to be connected to, as VRPN's own client does.
+    std::list<Reader> readers;
+    for (const std::string how : {"--ping Hand0", "--ask", ""})
+      readers.emplace_back(folder, "client" + std::to_string(readers.size()),
+                           client + " --messages " + std::to_string(54 * 90) + " " + how);
+    for (Reader& reader : readers) {
+      const int code = reader.wait();
+      REQUIRE_MESSAGE(code == 0, contents(reader.out()));
+    }
+    // The driver for trackers understands it as well.
+    const Finished info =
+        nendo::test::nendo({"info", "vrpn:Hand1@127.0.0.1:" + port + "?sensor=1", "--json"});
+    CHECK_MESSAGE(info.exit_code == 0, info.err);
+    run.signal(SIGINT);
+    const Finished done = run.wait(std::chrono::seconds(110));
+    REQUIRE_MESSAGE(done.exit_code == 0, done.err);
+    const json to = summary_of(done)["published"][1];
+    CHECK(to["clients"] == 5);
+    CHECK(to["refused_clients"] == 0);
+    CHECK(to["records"] == summary_of(done)["ticks"]);
+    REQUIRE(all.wait() == 0);
+    std::set<std::array<float, 3>> tips; // of both index fingers
+    for (const json& record : objects_in(contents(all.out())))
+      if (record.contains("hands"))
+        for (const json& hand : record["hands"])
+          tips.insert(hand["index_tip"].get<std::array<float, 3>>());
+    for (const Reader& reader : readers) {
+      std::map<std::string, std::vector<double>> times; // of one sensor each
+      std::size_t known = 0, seen = 0;
+      for (const json& message : objects_in(contents(reader.out()))) {
+        if (message["type"] != "vrpn_Tracker Pos_Quat" || message["sensor"] != 10) continue;
+        times[message["sender"]].push_back(message["time"]);
+        ++seen;
+        known += tips.count(message["position"].get<std::array<float, 3>>());
+      }
+      CHECK(known > 9 * seen / 10);
+      for (const std::string hand : {"Hand0", "Hand1"}) {
+        const auto& of_hand = times[hand];
+        REQUIRE(of_hand.size() >= 80);
+        CHECK(std::is_sorted(of_hand.begin(), of_hand.end()));
+      }
+    }
+    CHECK(contents(readers.front().out()).find("pong_message") != std::string::npos);
   }
 
   TEST_CASE("readers that stop, are killed, or would write, disturb no other") {

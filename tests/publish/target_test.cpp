@@ -42,6 +42,19 @@ TEST_SUITE("target") {
     CHECK_FALSE(std::get<OscTarget>(*parse_target("vmc:1")).rate_hz);
   }
 
+  TEST_CASE("a VRPN server listens at VRPN's port of this machine, or where the target says") {
+    for (const auto& [text, expected] : {std::pair{"vrpn", "127.0.0.1:3883"},
+                                         {"vrpn?rate=30", "127.0.0.1:3883"},
+                                         {"vrpn:4000", "127.0.0.1:4000"},
+                                         {"vrpn:0.0.0.0:3883?rate=30", "0.0.0.0:3883"}}) {
+      const auto target = parse_target(text);
+      REQUIRE(target);
+      const auto& vrpn = std::get<VrpnTarget>(*target);
+      CHECK(vrpn.endpoint.authority() == expected);
+      CHECK(vrpn.rate_hz.has_value() == (std::string(text).find("rate") != std::string::npos));
+    }
+  }
+
   TEST_CASE("places are the same however they are written, with any other readers") {
     const std::vector<std::vector<std::string>> places{
         {"shm", "shm:run", "shm:run?group=0"},
@@ -50,7 +63,9 @@ TEST_SUITE("target") {
         {"osc:9001"},
         {"osc:127.0.0.2:9000"},
         {"osc:[::1]:9000", "osc:[0:0::1]:9000"},
-        {"osc:[::2]:9000"}};
+        {"osc:[::2]:9000"},
+        {"vrpn", "vrpn:3883", "vrpn:127.0.0.1:3883?rate=9"},
+        {"vrpn:9000"}};
     for (std::size_t one = 0; one < places.size(); ++one)
       for (std::size_t other = 0; other < places.size(); ++other)
         for (const auto& first : places[one])
@@ -90,6 +105,12 @@ TEST_SUITE("target") {
                                    "osc:[]:9000",
                                    "osc:[127.0.0.1]:9000",
                                    "osc:256.0.0.1:9000",
+                                   "vrpn:",
+                                   "vrpn:0",
+                                   "vrpn:?rate=30",
+                                   "vrpn?rate=0",
+                                   "vrpn:localhost:3883",
+                                   "vrpns",
                                    "tcp:9000"}) {
       CAPTURE(text);
       const auto target = parse_target(text);

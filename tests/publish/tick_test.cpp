@@ -8,6 +8,7 @@
 #include "publish/osc_publisher.hpp"
 #include "publish/publish_fixtures.hpp"
 #include "publish/segment.hpp"
+#include "publish/vrpn_publisher.hpp"
 #include "support/restraint.hpp"
 #include "support/sleep_only.hpp"
 
@@ -43,16 +44,19 @@ void move_and_tick(LoopUnderTest& test, std::uint64_t first, std::uint64_t ticks
 } // namespace
 
 TEST_SUITE("publishing_tick") {
-  TEST_CASE("with a segment, its reader and datagrams attached no tick allocates, frees, locks or "
+  TEST_CASE("with a segment, its reader, datagrams and a server attached no tick allocates, frees, "
+            "locks or "
             "calls the system, and none meets a new page") {
     if (!test::restraint_is_counted) return;
     for (const auto mode : {flow::Mode::type1, flow::Mode::type2}) {
       LoopUnderTest test(mode, {.rings_of_ball = 16});
       SegmentPublisher publisher(test::segment_name("tick"), {});
       OscPublisher sender("osc:9", port_9());
-      test::attach(test, {&publisher, &sender});
+      VrpnPublisher server("vrpn", VrpnTarget{});
+      test::attach(test, {&publisher, &sender, &server});
       REQUIRE(publisher.begin(test::outline_of(test)));
       REQUIRE(sender.begin(test::outline_of(test)));
+      REQUIRE(server.begin());
       const test::MappedSegment segment(test::segment_name("tick"));
       std::atomic<bool> over{false};
       std::uint64_t read = 0;
@@ -83,6 +87,7 @@ TEST_SUITE("publishing_tick") {
       over = true;
       reader.join();
       sender.end();
+      server.end();
       REQUIRE(filtered);
       CHECK(calls.count == 0);
       CHECK(counts.allocations + counts.frees + counts.locks == 0);
@@ -91,6 +96,7 @@ TEST_SUITE("publishing_tick") {
       CHECK(segment.newest() == 5600);
       CHECK(sender.counts().records == 5600);
       CHECK(sender.counts().sent + sender.counts().lost == 5600);
+      CHECK(server.counts().sent + server.counts().lost == 5600);
       CHECK(test.loop->stats().failed == 0);
     }
   }

@@ -1,4 +1,4 @@
-// A tracker of a VRPN server, see vrpn_protocol.hpp.
+// A tracker of a VRPN server, see nendo/driver/vrpn_protocol.hpp.
 
 #include <algorithm>
 #include <array>

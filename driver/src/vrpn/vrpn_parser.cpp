@@ -4,14 +4,9 @@
 #include <utility>
 
 #include <nendo/base/byte_reader.hpp>
-#include <nendo/base/byte_writer.hpp>
 
 namespace nendo::driver::vrpn {
 namespace {
-
-constexpr std::size_t aligned(std::size_t bytes) noexcept {
-  return (bytes + alignment - 1) / alignment * alignment;
-}
 
 std::string_view text_of(std::span<const std::byte> bytes) noexcept {
   const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -20,28 +15,6 @@ std::string_view text_of(std::span<const std::byte> bytes) noexcept {
 
 bool is_number(std::int32_t number) noexcept {
   return number >= 0 && static_cast<std::size_t>(number) < max_numbers;
-}
-
-void append_message(std::vector<std::byte>& out, std::int32_t sender, std::int32_t type,
-                    std::span<const std::byte> payload) {
-  ByteWriter writer(out);
-  writer.u32_be(static_cast<std::uint32_t>(header_bytes + payload.size()));
-  writer.u32_be(0); // servers use neither the time of these messages nor the sequence number [C]
-  writer.u32_be(0);
-  writer.u32_be(static_cast<std::uint32_t>(sender));
-  writer.u32_be(static_cast<std::uint32_t>(type));
-  writer.u32_be(0);
-  writer.bytes(payload);
-  out.resize(out.size() + aligned(payload.size()) - payload.size());
-}
-
-void append_name(std::vector<std::byte>& out, std::int32_t what, std::string_view name) {
-  std::vector<std::byte> payload;
-  ByteWriter writer(payload);
-  writer.u32_be(static_cast<std::uint32_t>(name.size() + 1));
-  writer.bytes(std::as_bytes(std::span(name)));
-  writer.u8(0);
-  append_message(out, 0, what, payload);
 }
 
 } // namespace
@@ -118,21 +91,21 @@ Parser::Finding Parser::end_header() noexcept {
     return {};
   }
   header_.payload_bytes = length - header_bytes;
-  const std::size_t padded = aligned(header_.payload_bytes);
-  const bool is_too_long = header_bytes + padded > message_.size();
+  const std::size_t bytes = padded(header_.payload_bytes);
+  const bool is_too_long = header_bytes + bytes > message_.size();
   if (header_.kind != Kind::other && is_too_long) count_bad();
   if (header_.kind == Kind::other || is_too_long) {
     discard_held();
-    to_skip_ = padded;
-    if (padded == 0) {
+    to_skip_ = bytes;
+    if (bytes == 0) {
       expect(State::in_header, header_bytes);
     } else {
       state_ = State::skipping;
     }
     return {};
   }
-  expect(State::in_payload, header_bytes + padded);
-  return padded == 0 ? end_message() : Finding{};
+  expect(State::in_payload, header_bytes + bytes);
+  return bytes == 0 ? end_message() : Finding{};
 }
 
 Parser::Finding Parser::end_message() noexcept {
@@ -200,23 +173,16 @@ Parser::Finding Parser::take_text(std::span<const std::byte> payload) noexcept {
   return Text{severity, text_of(reader.take(reader.remaining()))};
 }
 
-std::vector<std::byte> greeting() {
-  std::vector<std::byte> bytes;
-  ByteWriter(bytes).bytes(std::as_bytes(std::span(cookie)));
-  bytes.resize(cookie_bytes);
-  return bytes;
-}
-
 std::vector<std::byte> describe_ping(std::string_view tracker) {
   std::vector<std::byte> bytes;
-  append_name(bytes, describes_sender, tracker);
-  append_name(bytes, describes_type, ping_name);
+  append_name(bytes, describes_sender, 0, tracker);
+  append_name(bytes, describes_type, 0, ping_name);
   return bytes;
 }
 
 std::vector<std::byte> ping() {
   std::vector<std::byte> bytes;
-  append_message(bytes, 0, 0, {});
+  append_message(bytes, 0, 0, 0, {}); // servers do not use its time [C]
   return bytes;
 }
 

@@ -15,8 +15,9 @@
 #include <variant>
 #include <vector>
 
+#include <nendo/driver/vrpn_protocol.hpp>
+
 #include "stream/stream_parser.hpp"
-#include "vrpn/vrpn_protocol.hpp"
 
 namespace nendo::driver::vrpn {
 
@@ -121,8 +122,6 @@ private:
   std::array<Kind, max_numbers> type_kind_{}; ///< indexed by the type's number
 };
 
-/// Returns the bytes with which a client begins: the cookie.
-std::vector<std::byte> greeting();
 /// Returns the messages that describe the tracker as sender 0 and the ping as type 0.
 std::vector<std::byte> describe_ping(std::string_view tracker);
 /// Returns a ping of sender 0.

@@ -6,8 +6,7 @@
 
 #include <nendo/base/result.hpp>
 #include <nendo/driver/device_spec.hpp>
-
-#include "vrpn/vrpn_protocol.hpp"
+#include <nendo/driver/vrpn_protocol.hpp>
 
 namespace nendo::driver::vrpn {
 

@@ -1,9 +1,10 @@
 #pragma once
-// The protocol of VRPN 7 over TCP, as far as a client of trackers needs it. Each fact names who
-// states it:
+// The protocol of VRPN 7 over TCP, as far as a client of trackers and a server of hands need it.
+// Each fact names who states it:
 //   [C]  vrpn_Connection.C of github.com/vrpn/vrpn
 //   [B]  vrpn_BaseClass.C
 //   [T]  vrpn_Tracker.C
+//   [A]  vrpn_Analog.C, vrpn_Button.C
 //   [?]  stated by no source, chosen here
 //
 // A client connects to the server's port. Both ends send a cookie at once, and then messages. The
@@ -14,10 +15,18 @@
 // to all clients as one of its own [C]. So a client must look for its tracker among the server's
 // names before it sends the name, and the name alone does not say that such a tracker is there:
 // only the server's own devices answer a ping [B].
+//
+// VRPN's own client does not begin with a connection. It sends a datagram to the server's port,
+// which has its address and a port of TCP as text ("192.0.2.7 40123" and a NUL), and the server
+// connects to that port [C].
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
+#include <vector>
+
+#include <nendo/base/api.hpp>
 
 namespace nendo::driver::vrpn {
 
@@ -59,5 +68,25 @@ inline constexpr std::uint32_t text_warning = 1; ///< severity; 0 is normal, 2 a
 // Both have no payload [B].
 inline constexpr std::string_view ping_name = "vrpn_Base ping_message";
 inline constexpr std::string_view pong_name = "vrpn_Base pong_message";
+/// f64 number of channels, f64 each [A].
+inline constexpr std::string_view analog_name = "vrpn_Analog Channel";
+/// i32 button, i32 state: 1 pressed [A].
+inline constexpr std::string_view button_name = "vrpn_Button Change";
+
+/// Returns the length of a payload with its zeros.
+constexpr std::size_t padded(std::size_t payload_bytes) noexcept {
+  return (payload_bytes + alignment - 1) / alignment * alignment;
+}
+
+/// Returns the bytes with which each end begins: the cookie.
+NENDO_API std::vector<std::byte> greeting();
+/// Appends a message of sequence number 0, which no receiver uses [C]. time_us: since 1970 in UTC,
+/// up to 2106; 0 for messages that need no time.
+NENDO_API void append_message(std::vector<std::byte>& out, std::int64_t time_us,
+                              std::int32_t sender, std::int32_t type,
+                              std::span<const std::byte> payload);
+/// Appends a description of `number`. what: describes_sender or describes_type.
+NENDO_API void append_name(std::vector<std::byte>& out, std::int32_t what, std::int32_t number,
+                           std::string_view name);
 
 } // namespace nendo::driver::vrpn

@@ -25,6 +25,11 @@ public:
     for (const unsigned shift : {24U, 16U, 8U, 0U})
       u8(static_cast<std::uint8_t>(value >> shift));
   }
+  void f64_be(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    u32_be(static_cast<std::uint32_t>(bits >> 32U));
+    u32_be(static_cast<std::uint32_t>(bits));
+  }
   void bytes(std::span<const std::byte> part) {
     out_->insert(out_->end(), part.begin(), part.end());
   }
