@@ -16,7 +16,7 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
-set(CPACK_COMPONENTS_ALL program library development udev)
+set(CPACK_COMPONENTS_ALL program library c development udev)
 if(NENDO_MARKERS)
   list(APPEND CPACK_COMPONENTS_ALL markers)
 endif()
@@ -58,6 +58,8 @@ nendo_package(program nendo science "data gloves that shape 3-D models"
   "This package has the program.")
 nendo_package(library ${library_package} libs "data gloves that shape 3-D models - libraries"
   "This package has the shared libraries.")
+nendo_package(c libnendo-c1 libs "data gloves that shape 3-D models - C interface"
+  "This package has the shared library for programs in C, Unity or Rust.")
 nendo_package(development libnendo-dev libdevel "data gloves that shape 3-D models - for building programs"
   "This package has headers, and files for CMake and pkg-config.")
 nendo_package(udev nendo-udev misc "data gloves that shape 3-D models - udev rules"
@@ -91,7 +93,12 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS nendo-udev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA
   ${PROJECT_BINARY_DIR}/debian/triggers ${PROJECT_BINARY_DIR}/debian/shlibs)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library_package} ${same}, libeigen3-dev")
+set(CPACK_DEBIAN_C_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_C_PACKAGE_DEPENDS "${library_package} ${same}")
+set(CPACK_DEBIAN_C_PACKAGE_RECOMMENDS nendo-udev)
+file(WRITE ${PROJECT_BINARY_DIR}/debian/c/shlibs "libnendo_c 1 libnendo-c1 (>= ${PROJECT_VERSION})\n")
+set(CPACK_DEBIAN_C_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/triggers ${PROJECT_BINARY_DIR}/debian/c/shlibs)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library_package} ${same}, libnendo-c1 ${same}, libeigen3-dev")
 set(CPACK_DEBIAN_UDEV_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_MARKERS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_MARKERS_PACKAGE_DEPENDS "${library_package} ${same}")

@@ -8,7 +8,7 @@ include(doctest)
 # What tools/check builds with the address sanitizer: the tests of libraries and of parsers, and the fuzz
 # targets.
 add_custom_target(library_tests)
-set(library_tests base explorer udev driver emulator hand deform puppet flow recording sculpting publish web serve markers openxr serialport usb)
+set(library_tests base explorer udev driver emulator hand deform puppet flow recording sculpting c publish web serve markers openxr serialport usb)
 add_custom_target(fuzz_targets)
 
 # doctest's own implementation, compiled once for all test programs.
