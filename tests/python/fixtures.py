@@ -51,7 +51,10 @@ def run_python(code, *arguments, **options):
 def seconds_after_interrupt(code, *arguments):
     """Runs code that prints "waits" and then waits, sends it a Ctrl-C, and returns after how many seconds it was raised."""
     body = textwrap.indent(textwrap.dedent(code), "    ")
-    script = f"import sys, time, nendo\ntry:\n{body}\nexcept KeyboardInterrupt:\n    print(time.monotonic())\n"
+    # A parent in the background, as of a script, may ignore Ctrl-C, and its children too.
+    heeds = "signal.signal(signal.SIGINT, signal.default_int_handler)"
+    script = (f"import signal, sys, time, nendo\n{heeds}\ntry:\n{body}\n"
+              "except KeyboardInterrupt:\n    print(time.monotonic())\n")
     with subprocess.Popen([sys.executable, "-u", "-c", script, *map(str, arguments)], stdout=subprocess.PIPE, text=True) as child:
         assert child.stdout.readline() == "waits\n"
         time.sleep(0.3)

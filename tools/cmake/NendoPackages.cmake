@@ -34,9 +34,9 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS
-  ${PROJECT_BINARY_DIR}/driver/base ${PROJECT_BINARY_DIR}/udev ${PROJECT_BINARY_DIR}/driver ${PROJECT_BINARY_DIR}/hand ${PROJECT_BINARY_DIR}/deform
-  ${PROJECT_BINARY_DIR}/apps/flow ${PROJECT_BINARY_DIR}/apps/recording ${PROJECT_BINARY_DIR}/apps/sculpting)
+# The libraries, and where the build has them: dpkg-shlibdeps looks for them there.
+set(libraries driver/base udev driver hand deform apps/puppet apps/flow apps/recording apps/sculpting)
+list(TRANSFORM libraries PREPEND ${PROJECT_BINARY_DIR}/ OUTPUT_VARIABLE CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS)
 
 # nendo_package(COMPONENT NAME SECTION SUMMARY TEXT): `TEXT` follows the line that all of them share.
 function(nendo_package component name section summary text)
@@ -135,7 +135,8 @@ file(WRITE ${PROJECT_BINARY_DIR}/debian/changelog "nendo (${PROJECT_VERSION}) ${
 execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/debian/changelog COMMAND_ERROR_IS_FATAL ANY)
 file(WRITE ${PROJECT_BINARY_DIR}/debian/triggers "activate-noawait ldconfig\n")
 set(shlibs "")
-foreach(name base udev driver hand deform puppet flow recording sculpting)
+foreach(library ${libraries})
+  cmake_path(GET library FILENAME name)
   string(APPEND shlibs "libnendo_${name} ${NENDO_SOVERSION} ${library_package} (>= ${PROJECT_VERSION})\n")
 endforeach()
 file(WRITE ${PROJECT_BINARY_DIR}/debian/shlibs "${shlibs}")
