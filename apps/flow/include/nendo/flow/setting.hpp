@@ -23,7 +23,13 @@ class Rig;
 
 namespace nendo::flow {
 
-/// The strings of a setting for messages, files and widgets.
+constexpr std::uint8_t in_mode(Mode mode) noexcept {
+  return static_cast<std::uint8_t>(1U << static_cast<unsigned>(mode));
+}
+inline constexpr std::uint8_t in_all_modes = (1U << mode_count) - 1U;
+inline constexpr std::uint8_t by_points = in_mode(Mode::type1) | in_mode(Mode::type2);
+
+/// The strings of a setting for messages, files and widgets, and where it works.
 struct SettingText {
   std::string_view name;              ///< the key in timelines and JSON
   std::string_view option;            ///< the command line option; empty: none
@@ -31,6 +37,9 @@ struct SettingText {
   std::string_view label;             ///< the label of its widget
   std::string_view help;              ///< the option's help
   StepKind step = StepKind::settings; ///< the undo step of changing only this setting
+  std::uint8_t modes = in_all_modes;  ///< the modes in which it has an effect, as bits of in_mode()
+
+  constexpr bool works_in(Mode mode) const noexcept { return (modes & in_mode(mode)) != 0; }
 };
 
 template <class T>
@@ -136,7 +145,7 @@ inline constexpr ChoiceSetting<bool> pinches{
     {{"pinches", "--pinches", "pinches", "closed pinches",
       "closed: pads of thumb and finger that are nearly together meet, but not in clay; or "
       "measured: they keep the measured distance, to the millimetre",
-      StepKind::filter},
+      StepKind::filter, static_cast<std::uint8_t>(in_all_modes & ~in_mode(Mode::clay))},
      nullptr,
      &hand::FilterOptions::close_pinches},
     "measured or closed",
@@ -180,7 +189,7 @@ inline constexpr ChoiceSetting<Mode> mode{{{"mode", "--mode", "mode", "mode",
                                           mode_named};
 inline constexpr ChoiceSetting<deform::Wendland> kernel{
     {{"kernel", "--kernel", "kernel", "kernel",
-      "wendland-c0, wendland-c2, wendland-c4 or wendland-c6", StepKind::kernel},
+      "wendland-c0, wendland-c2, wendland-c4 or wendland-c6", StepKind::kernel, by_points},
      &LoopSettings::kernel},
     "wendland-c0, wendland-c2, wendland-c4 or wendland-c6",
     deform::name_of,
@@ -189,14 +198,14 @@ inline constexpr SwitchSetting injective{
     {"injective", "--injective", "never folding", "never folds",
      "Prevent folds: large moves are split so that the surface never folds; points whose paths "
      "cross are kept apart",
-     StepKind::folding},
+     StepKind::folding, by_points},
     &LoopSettings::injective};
 inline constexpr FingersSetting radius{
     {{"radius_m", "--radius", "radius", "radius",
       "Radius of a fingertip's influence, in the model's units, or with a unit on the stage, e.g. "
       "3cm; without it, 0.2 of the model's longest side; "
       "or five with commas between, thumb to little finger; 10+40:0.5 is a mix",
-      StepKind::radius},
+      StepKind::radius, by_points},
      &LoopSettings::radius_m},
     {1e-9, 1e9},
     "m",
@@ -210,11 +219,12 @@ inline constexpr BrushesSetting brushes{
      "The effect of a fingertip along its path, in type 2: pull, none, push, inflate, smooth, "
      "flatten, "
      "twist, scale or pinch; or five with commas between, thumb to little finger",
-     StepKind::brush},
+     StepKind::brush, in_mode(Mode::type2)},
     &LoopSettings::brushes};
 inline constexpr NumberSetting brush_strength{
     {{"brush_strength", "--strength", "strength", "strength",
-      "The strength of brushes; below 0 their effect is reversed", StepKind::brush},
+      "The strength of brushes; below 0 their effect is reversed", StepKind::brush,
+      in_mode(Mode::type2)},
      &LoopSettings::brush_strength},
     {-1.0, 1.0},
     "",
@@ -223,14 +233,14 @@ inline constexpr NumberSetting brush_strength{
 inline constexpr NumberSetting keep_volume{
     {{"keep_volume", "--keep-volume", "keeping the volume", "volume",
       "0: compressible; 1: volume-preserving, so that pressed-in volume comes out nearby",
-      StepKind::volume},
+      StepKind::volume, by_points},
      &LoopSettings::keep_volume},
     {0.0, 1.0}};
 inline constexpr ChoiceSetting<Hold> hold{
     {{"hold", "--hold", "whole hand", "whole hand",
       "The points of a hand that hold the model in type 1: tips, or hand, 45 points of the whole "
       "hand",
-      StepKind::hold},
+      StepKind::hold, in_mode(Mode::type1)},
      &LoopSettings::hold},
     "tips or hand",
     name_of,
