@@ -176,7 +176,8 @@ int view_timeline(const Options& options) {
   EditSession session(timeline, model, *out);
   if (const auto begun = begin_at(options, session); !begun) return cli::report(begun.error());
   auto window = viewer::TimelineWindow::open(
-      "Nendo: " + std::filesystem::path(*out).filename().string(), window_size,
+      "Nendo: " + std::filesystem::path(*out).filename().string(),
+      {window_size, viewer::Theme::dark},
       "on a box without a screen `nendo picture` draws a timeline, `nendo export` animates it, and "
       "the other commands of `nendo edit` change it");
   if (!window) return cli::report(window.error());

@@ -52,8 +52,10 @@ Result<void> check_out_puppet(const RunArguments& options) {
 Result<void> check_outputs(RunArguments& options) {
   const session::RunOptions& run = options.run;
   const session::ViewOptions& view = options.view;
-  if (!view.window && (view.frames > 0 || view.contact || !view.screenshot.empty()))
-    return Error{Errc::usage, "--frames, --screenshot and --contact: need the window; add --view"};
+  if (!view.window && (view.frames > 0 || view.contact || !view.screenshot.empty() ||
+                       view.theme != session::ViewOptions{}.theme))
+    return Error{Errc::usage,
+                 "--frames, --screenshot, --contact and --theme: need the window; add --view"};
   const std::string& model = run.over ? run.over->take.setup.loop->mesh : run.mesh;
   if (auto fine = cli::check_place("--out", run.out, deform::mesh_endings); !fine) return fine;
   if (auto fine = cli::check_spares(model, "--out", run.out, options.force); !fine) return fine;

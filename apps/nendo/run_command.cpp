@@ -305,6 +305,8 @@ void add_run_options(cli::Command& command, RunArguments& options) {
       "--out-puppet", options.out_puppet,
       "Where the window saves an edited puppet, .toml; without it, the file that was "
       "opened, or one in the current folder, named after the model");
+  command.add_option("--theme", options.view.theme, "The window's colours")
+      .one_of({"light", "dark"});
   command.add_option("--screenshot", options.view.screenshot,
                      "Where the window's last picture goes, .png");
   command.add_flag("--contact", options.view.contact,

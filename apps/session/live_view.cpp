@@ -16,8 +16,6 @@ using namespace nendo::viewer;
 
 namespace {
 
-constexpr Size window_size{1180, 760};
-
 class LiveView final : public Observer {
 public:
   LiveView(std::unique_ptr<LiveWindow> window, const ViewOptions& options, const RunOptions& run)
@@ -46,6 +44,7 @@ public:
         gauges_.devices[slot].insert(gauges_.devices[slot].end(), {title, state});
     }
     gauges_.facts = status.facts;
+    gauges_.vertices = status.model.mesh.vertex_count();
     if (std::exchange(model_, status.frame.model) != status.frame.model) {
       window_->set_model(status.model.layout(),
                          SceneBuilder(status.model.mesh, status.frame.units_per_metre));
@@ -86,7 +85,9 @@ private:
 
 Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions& options,
                                                  const RunOptions& run) {
-  auto window = LiveWindow::open("Nendo", window_size);
+  WindowLook look;
+  if (options.theme == "dark") look.theme = Theme::dark;
+  auto window = LiveWindow::open("Nendo", look);
   if (!window) return window.error();
   return std::unique_ptr<Observer>(std::make_unique<LiveView>(*std::move(window), options, run));
 }

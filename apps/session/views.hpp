@@ -12,9 +12,10 @@ namespace nendo::session {
 
 struct ViewOptions {
   bool window = false;
-  bool contact = false;     ///< initially shows where hands touch clay
-  std::string screenshot;   ///< the file for the last picture, .png; empty: none
-  std::uint32_t frames = 0; ///< pictures after which the run ends; 0: no limit
+  bool contact = false;       ///< initially shows where hands touch clay
+  std::string theme{"light"}; ///< or dark
+  std::string screenshot;     ///< the file for the last picture, .png; empty: none
+  std::uint32_t frames = 0;   ///< pictures after which the run ends; 0: no limit
 };
 
 /// Opens the window. Main thread, also for all calls of the window. Errors: failed (no screen, no

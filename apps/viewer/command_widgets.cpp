@@ -5,12 +5,14 @@
 #include <string>
 #include <utility>
 
+#include "viewer/controls.hpp"
+#include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, int>, 12> named_keys{{
+constexpr std::array<std::pair<std::string_view, int>, 13> named_keys{{
     {"Tab", GLFW_KEY_TAB},
     {"Esc", GLFW_KEY_ESCAPE},
     {"Delete", GLFW_KEY_DELETE},
@@ -23,6 +25,7 @@ constexpr std::array<std::pair<std::string_view, int>, 12> named_keys{{
     {"Up", GLFW_KEY_UP},
     {"Down", GLFW_KEY_DOWN},
     {"?", GLFW_KEY_SLASH},
+    {"F3", GLFW_KEY_F3},
 }};
 
 bool take_prefix(std::string_view& name, std::string_view prefix) noexcept {
@@ -71,13 +74,10 @@ bool is_struck(const commands::Row& row) {
 template <class Now>
 bool row_button(const commands::Row& row, const Now& now, float width) {
   const bool is_on = row.is_on_in(now) && !row.button_on.empty();
-  const std::string text(is_on ? row.button_on : row.button);
-  const bool possible = row.refusal_in(now) == nullptr;
-  ImGui::BeginDisabled(!possible);
-  const bool chosen = ImGui::Button(text.c_str(), ImVec2(width, 0.0F));
-  ImGui::EndDisabled();
+  const bool chosen =
+      button(is_on ? row.button_on : row.button, width, row.refusal_in(now) == nullptr);
   show_help(row, now);
-  return chosen && possible;
+  return chosen;
 }
 template bool row_button(const commands::Row&, const commands::Situation&, float);
 
@@ -104,9 +104,16 @@ void edit_buttons(commands::Buttons group, const commands::EditFacts& now, float
 void show_help(std::string_view name, std::string_view text) {
   if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
   const commands::Row& row = *commands::named(name);
-  const std::string shown =
-      std::string(text.empty() ? row.help : text) + " (" + commands::keys_of(row) + ")";
-  ImGui::SetTooltip("%s", shown.c_str());
+  show_text(std::string(text.empty() ? row.help : text) + " (" + commands::keys_of(row) + ")");
+}
+
+void show_text(std::string_view text) {
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(em(24.0F));
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
 }
 
 void draw_key_list(std::uint8_t places, const char* mouse, bool& shown) {
@@ -115,8 +122,11 @@ void draw_key_list(std::uint8_t places, const char* mouse, bool& shown) {
                           ImVec2(0.5F, 0.5F));
   ImGui::Begin("Keys", &shown, ImGuiWindowFlags_AlwaysAutoResize);
   for (const commands::Row& row : commands::table())
-    if ((row.places & places) != 0)
-      ImGui::Text("%-22s %s", commands::keys_of(row).c_str(), std::string(row.help).c_str());
+    if ((row.places & places) != 0) {
+      ImGui::TextUnformatted(commands::keys_of(row).c_str());
+      ImGui::SameLine(em(10.0F));
+      ImGui::TextUnformatted(row.help.data(), row.help.data() + row.help.size());
+    }
   ImGui::TextUnformatted("A capital is typed with shift.");
   ImGui::TextUnformatted("mouse: drag turns, middle or shift drag shifts, wheel zooms;");
   ImGui::TextUnformatted(mouse);

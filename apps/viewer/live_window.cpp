@@ -1,63 +1,14 @@
 #include "viewer/live_window.hpp"
 
-#include <initializer_list>
 #include <utility>
 
 #include <imgui.h>
 
 #include "viewer/panel.hpp"
 #include "viewer/puppet_tool.hpp"
+#include "viewer/status_bar.hpp"
 
 namespace nendo::viewer {
-
-namespace {
-
-ImVec4 page_colour(unsigned rgb, float opacity = 1.0F) {
-  const auto part = [&](unsigned shift) {
-    return static_cast<float>(rgb >> shift & 0xFFU) / 255.0F;
-  };
-  return {part(16), part(8), part(0), opacity};
-}
-
-void use_shapes(ImGuiStyle& style) {
-  style.WindowRounding = 10.0F;
-  style.PopupRounding = 8.0F;
-  style.FrameRounding = 5.0F;
-  style.GrabRounding = 5.0F;
-  style.ScrollbarRounding = 5.0F;
-  style.ScrollbarSize = 10.0F;
-  style.FrameBorderSize = 1.0F;
-  style.WindowPadding = {12.0F, 10.0F};
-  style.FramePadding = {7.0F, 3.0F};
-  style.ItemSpacing = {6.0F, 5.0F};
-}
-
-/// Gives ImGui's widgets the colours and shapes of the browser's page (apps/web/page/page.css).
-void use_page_style() {
-  ImGui::StyleColorsLight();
-  ImGuiStyle& style = ImGui::GetStyle();
-  use_shapes(style);
-  const auto paint = [&](const ImVec4& colour, std::initializer_list<int> items) {
-    for (const int item : items)
-      style.Colors[item] = colour;
-  };
-  paint(page_colour(0x23282D), {ImGuiCol_Text}); // these are page.css's
-  paint(page_colour(0x5C656D), {ImGuiCol_TextDisabled});
-  paint(page_colour(0xC9CFD4), {ImGuiCol_Border});
-  paint(page_colour(0xFFFFFF), {ImGuiCol_PopupBg, ImGuiCol_Button});
-  paint(page_colour(0xFFFFFF, 0.90F),
-        {ImGuiCol_WindowBg, ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed});
-  paint(page_colour(0x000000, 0.045F), {ImGuiCol_FrameBg, ImGuiCol_Header});
-  paint(page_colour(0xB4532A, 0.25F),
-        {ImGuiCol_ButtonHovered, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive,
-         ImGuiCol_HeaderHovered, ImGuiCol_HeaderActive});
-  paint(page_colour(0xB4532A), {ImGuiCol_ButtonActive, ImGuiCol_CheckMark, ImGuiCol_SliderGrab,
-                                ImGuiCol_SliderGrabActive, ImGuiCol_PlotLines});
-  paint(page_colour(0x34567A), {ImGuiCol_PlotHistogram});
-  paint(page_colour(0x000000, 0.20F), {ImGuiCol_ModalWindowDimBg});
-}
-
-} // namespace
 
 LiveWindow::LiveWindow(std::unique_ptr<SceneWindow> window)
     : window_(std::move(window)), panel_(std::make_unique<Panel>()),
@@ -66,13 +17,13 @@ LiveWindow::LiveWindow(std::unique_ptr<SceneWindow> window)
 
 LiveWindow::~LiveWindow() = default;
 
-Result<std::unique_ptr<LiveWindow>> LiveWindow::open(const std::string& title, render::Size size) {
+Result<std::unique_ptr<LiveWindow>> LiveWindow::open(const std::string& title,
+                                                     const WindowLook& look) {
   auto window = SceneWindow::open(
-      title, size,
+      title, look,
       "on a box without a screen `nendo run --web 8080` shows the run in a browser, and `nendo "
       "picture` and `nendo run --picture` draw files");
   if (!window) return window.error();
-  use_page_style();
   (*window)->parts().radii = false; // as on the page
   return std::unique_ptr<LiveWindow>(new LiveWindow(*std::move(window)));
 }
@@ -80,8 +31,7 @@ Result<std::unique_ptr<LiveWindow>> LiveWindow::open(const std::string& title, r
 void LiveWindow::begin(const deform::BlockLayout& layout, const render::SceneBuilder& builder,
                        const flow::LoopSettings& settings) {
   set_model(layout, builder);
-  panel_->pending.follow(settings);
-  panel_->one_radius = panel_->pending.has_one_radius();
+  panel_->follow_settings(settings);
   scene_frame_.radius_m = settings.radius_m;
   holds_ = {};
 }
@@ -105,6 +55,7 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
   set_hands(frame, holds_, scene_frame_);
   if (frame.ticks_run > 0) panel_->follow_settings(frame.settings);
   window_->leave_left(panel_->covered_px());
+  window_->leave_below(static_cast<int>(status_bar_height()));
   window_->begin_picture(scene_frame_, frame.ticks_run > 0); // before, no hand is there
   if ((editor_->is_on() || editor_->has_masks()) && !editor_->is_dragging())
     for (const render::Surface& veil : marks_->veils(*editor_, *builder_))

@@ -19,8 +19,9 @@ namespace nendo::viewer {
 
 /// Values for the panel in addition to the frame.
 struct Gauges {
-  std::string model;    ///< the model's name
-  double rate_hz = 0.0; ///< the requested rate
+  std::string model;        ///< the model's name
+  double rate_hz = 0.0;     ///< the requested rate
+  std::size_t vertices = 0; ///< the number of the model's vertices
   /// Lines about the devices of each hand, by flow::Placement::index_of(side).
   std::array<std::vector<std::string>, 2> devices;
   commands::RunFacts facts{};
@@ -37,7 +38,7 @@ using Commands = std::vector<flow::Command>;
 class LiveWindow {
 public:
   /// Opens a window. Error: failed (no screen, no OpenGL 3.3); the message has an alternative.
-  static Result<std::unique_ptr<LiveWindow>> open(const std::string& title, render::Size size);
+  static Result<std::unique_ptr<LiveWindow>> open(const std::string& title, const WindowLook& look);
   ~LiveWindow();
   LiveWindow(const LiveWindow&) = delete;
   LiveWindow& operator=(const LiveWindow&) = delete;
@@ -54,7 +55,7 @@ public:
   /// The editor of the puppet, after its own begin().
   PuppetEditor& editor() noexcept { return *editor_; }
 
-  /// Returns the line below the panel's buttons: the report, or a command's refusal.
+  /// Returns the message in the status bar: the report, or a command's refusal.
   const std::string& message() const noexcept;
   /// Returns the settings that the panel shows.
   const flow::LoopSettings& settings() const noexcept;

@@ -5,27 +5,21 @@
 #include <cstdio>
 #include <utility>
 
-#include <nendo/flow/setting.hpp>
-
 #include "viewer/command_widgets.hpp"
+#include "viewer/controls.hpp"
+#include "viewer/status_bar.hpp"
+#include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
 
 using flow::Request;
-using Pending = flow::PendingSettings;
 using hand::Joint;
 
 namespace {
 
-constexpr std::array finger_names{"thumb", "index", "middle", "ring", "little"};
-constexpr float label_width = 58.0F; // of "strength" and of fingers, beside what they name
-
-const char* kernel_words(deform::Wendland kernel) {
-  constexpr std::array words{"Wendland C0", "Wendland C2", "Wendland C4", "Wendland C6"};
-  const auto* const first = Pending::kernels.begin();
-  return words[static_cast<std::size_t>(std::find(first, Pending::kernels.end(), kernel) - first)];
-}
+constexpr float gap_em = 0.7F; // from the window's edges
+constexpr float width_em = 19.0F;
 
 // How far two joints that follow each other are turned, degrees.
 float bend_deg(const hand::HandPose& pose, Joint from, Joint to) {
@@ -49,23 +43,14 @@ std::array<float, 15> bends_of(const hand::HandPose& pose) {
   return bends;
 }
 
-/// Chooses so many values in 1, as `format` shows them.
-void slider(const flow::NumberSetting& number, flow::LoopSettings& chosen, double steps,
-            const char* format) {
-  auto value = static_cast<float>(number.of(chosen));
-  if (ImGui::SliderFloat(number.label.data(), &value, static_cast<float>(number.range.min),
-                         static_cast<float>(number.range.max), format))
-    number.of(chosen) =
-        number.range.nearest(std::round(steps * static_cast<double>(value)) / steps);
-}
-
 void chart(const char* name, const Strip& strip, const char* unit) {
   char words[64];
   std::snprintf(words, sizeof words, "%s, most %.2f %s", name, static_cast<double>(strip.most()),
                 unit);
   ImGui::PushID(name);
   ImGui::PlotLines("##chart", strip.data(), strip.size(), strip.oldest(), words, 0.0F,
-                   std::max(1.0F, strip.most()), ImVec2(ImGui::GetContentRegionAvail().x, 44.0F));
+                   std::max(1.0F, strip.most()),
+                   ImVec2(ImGui::GetContentRegionAvail().x, em(3.0F)));
   ImGui::PopID();
 }
 
@@ -93,22 +78,10 @@ void LiveWindow::Panel::follow(const flow::Frame& frame, double rate_hz) {
       static_cast<float>(std::abs(static_cast<double>(ms(frame.since_last)) - 1e3 / rate_hz)));
 }
 
-void LiveWindow::Panel::buttons(const commands::Situation& now, const Gauges& gauges,
-                                Commands& commands) {
-  ImGui::TextUnformatted(now.frame.held ? "The hands hold the model." : "The hands hold nothing.");
-  buttons_of(commands::Buttons::hands, 2, now, commands);
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.0F, ImGui::GetStyle().FramePadding.y));
-  buttons_of(commands::Buttons::model, 3, now, commands);
-  ImGui::PopStyleVar();
-  message = note.empty() ? gauges.report : note;
-  if (!message.empty()) ImGui::TextWrapped("%s", message.c_str());
-}
-
-void LiveWindow::Panel::buttons_of(commands::Buttons group, int in_line,
-                                   const commands::Situation& now, Commands& commands) {
-  const float space = ImGui::GetStyle().ItemSpacing.x;
-  const auto count = static_cast<float>(in_line);
-  const float width = (ImGui::GetContentRegionAvail().x - (count - 1.0F) * space) / count;
+void LiveWindow::Panel::buttons_of(commands::Buttons group, const commands::Situation& now,
+                                   Commands& commands) {
+  constexpr int in_line = 2;
+  const float width = share_of_line(in_line);
   int column = 0;
   for (const commands::Row& row : commands::table()) {
     if (row.group != group || (row.is_shown != nullptr && !row.is_shown(now))) continue;
@@ -123,101 +96,29 @@ void LiveWindow::Panel::parts(SceneWindow& window) {
       std::pair{"hands", &shown.hands},      std::pair{"bones", &shown.bones},
       std::pair{"vectors", &shown.vectors},  std::pair{"radii", &shown.radii},
       std::pair{"contact", &shown.contacts}, std::pair{"facets", &window.facets()}};
-  constexpr std::size_t boxes_per_line = 3;
-  const float width = ImGui::GetContentRegionAvail().x / boxes_per_line;
+  const float left = ImGui::GetCursorPosX();
+  const float half = ImGui::GetContentRegionAvail().x / 2.0F;
   for (std::size_t at = 0; at < boxes.size(); ++at) {
-    if (at % boxes_per_line != 0)
-      ImGui::SameLine(ImGui::GetStyle().WindowPadding.x +
-                      width * static_cast<float>(at % boxes_per_line));
-    ImGui::Checkbox(boxes[at].first, boxes[at].second);
+    if (at % 2 != 0) ImGui::SameLine(left + half);
+    const auto& [name, value] = boxes[at];
+    check(name, *value);
+    show_help("show " + std::string(name));
   }
+}
+
+int LiveWindow::Panel::covered_px() const {
+  return folded ? 0 : static_cast<int>(em(gap_em + width_em));
 }
 
 void LiveWindow::Panel::follow_settings(const flow::LoopSettings& current) {
-  if (!pending.follow(current)) return;
-  if (!pending.has_one_radius()) one_radius = false;
-  if (!pending.has_one_brush()) one_brush = false;
-}
-
-/// One for all fingers, or one for each. A choice also chooses type 2, which has them.
-void LiveWindow::Panel::brushes(flow::LoopSettings& chosen) {
-  ImGui::Checkbox("one brush for all fingers", &one_brush);
-  const auto before = chosen.brushes;
-  for (std::size_t finger = 0; finger < (one_brush ? 1 : finger_names.size()); ++finger) {
-    deform::Brush& brush = chosen.brushes[finger];
-    ImGui::PushID(static_cast<int>(finger));
-    if (ImGui::BeginCombo(one_brush ? flow::setting::brushes.label.data() : finger_names[finger],
-                          name_of(brush).data())) {
-      for (std::uint8_t number = 0; number < deform::brush_count; ++number) {
-        const auto one = static_cast<deform::Brush>(number);
-        if (ImGui::Selectable(name_of(one).data(), one == brush)) brush = one;
-      }
-      ImGui::EndCombo();
-    }
-    ImGui::PopID();
-  }
-  if (one_brush) chosen.brushes.fill(chosen.brushes[0]);
-  if (chosen.brushes != before) chosen.mode = flow::Mode::type2;
-  slider(flow::setting::brush_strength, chosen, 10.0, "%.1f");
-  show_help("weaker brush");
-}
-
-void LiveWindow::Panel::settings() {
-  flow::LoopSettings& chosen = pending.now;
-  int mode = static_cast<int>(chosen.mode);
-  const float half = ImGui::GetContentRegionAvail().x * 0.64F;
-  ImGui::RadioButton("type 1: pull", &mode, 0);
-  ImGui::SameLine(half);
-  ImGui::RadioButton("clay", &mode, 2);
-  show_help("next mode", "Whole hands press the surface.");
-  ImGui::RadioButton("type 2: strokes", &mode, 1);
-  ImGui::SameLine(half);
-  ImGui::RadioButton("parts", &mode, 3);
-  show_help("next mode", "A hand that closes takes the part under it, until it opens.");
-  chosen.mode = static_cast<flow::Mode>(mode);
-  ImGui::PushItemWidth(-label_width);
-  if (ImGui::BeginCombo(flow::setting::kernel.label.data(), kernel_words(chosen.kernel))) {
-    for (const auto kernel : Pending::kernels)
-      if (ImGui::Selectable(kernel_words(kernel), kernel == chosen.kernel)) chosen.kernel = kernel;
-    ImGui::EndCombo();
-  }
-  brushes(chosen);
-  slider(flow::setting::keep_volume, chosen, 100.0, "%.2f");
-  show_help("more clay",
-            "From air to clay: what is pressed in comes out nearby. Above 0, fingertips "
-            "hold, and no links keep the surface from folding.");
-  bool whole_hand = chosen.hold == flow::Hold::hand;
-  ImGui::Checkbox(flow::setting::hold.label.data(), &whole_hand);
-  show_help("whole hand");
-  chosen.hold = whole_hand ? flow::Hold::hand : flow::Hold::fingertips;
-  ImGui::SameLine();
-  ImGui::Checkbox(flow::setting::injective.label.data(), &chosen.injective);
-  show_help("folding");
-  bool smooth = chosen.filter.kind == hand::FilterKind::one_euro;
-  ImGui::Checkbox(flow::setting::filter.label.data(), &smooth);
-  show_help("filter");
-  chosen.filter.kind = smooth ? hand::FilterKind::one_euro : hand::FilterKind::off;
-  ImGui::SameLine();
-  ImGui::Checkbox(flow::setting::pinches.label.data(), &chosen.filter.close_pinches);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", flow::setting::pinches.help.data());
-  ImGui::Checkbox("one radius for all fingers", &one_radius);
-  const flow::FingersSetting& radii = flow::setting::radius;
-  for (std::size_t finger = 0; finger < (one_radius ? 1 : finger_names.size()); ++finger) {
-    auto radius_cm = static_cast<float>(100.0 * chosen.radius_m[finger]);
-    if (ImGui::SliderFloat(one_radius ? radii.label.data() : finger_names[finger], &radius_cm,
-                           static_cast<float>(100.0 * radii.handy.min),
-                           static_cast<float>(100.0 * radii.handy.max), "%.1f cm"))
-      chosen.radius_m[finger] = radii.handy.nearest(static_cast<double>(radius_cm) / 100);
-  }
-  if (one_radius) chosen.radius_m.fill(chosen.radius_m[0]);
-  ImGui::PopItemWidth();
+  if (pending.follow(current)) settings.follow(current);
 }
 
 void LiveWindow::Panel::history(const flow::Frame& frame, Commands& commands) {
   const flow::StepList& list = frame.steps;
   const std::size_t hidden =
       frame.undo_steps - std::min<std::uint64_t>(frame.undo_steps, list.undoable);
-  ImGui::BeginChild("steps", ImVec2(0.0F, 96.0F), true);
+  ImGui::BeginChild("steps", ImVec2(0.0F, em(7.0F)), true);
   for (std::size_t at = 0; at <= list.count; ++at) {
     char words[48];
     if (at == 0) {
@@ -254,18 +155,16 @@ void LiveWindow::Panel::clay(const flow::Frame& frame) {
   ImGui::Text("volume %.1f cm3, at first %.1f", cm3 * clay.volume, cm3 * clay.first_volume);
 }
 
-void LiveWindow::Panel::timing(const flow::Frame& frame, const Gauges& gauges) const {
-  ImGui::Text("%g Hz wanted, %s", gauges.rate_hz, name_of(frame.settings.mode).data());
-  ImGui::TextWrapped("%llu ticks, %llu missed", static_cast<unsigned long long>(frame.ticks_run),
-                     static_cast<unsigned long long>(frame.missed));
-  ImGui::TextWrapped("%llu commits, %llu undone", static_cast<unsigned long long>(frame.commits),
-                     static_cast<unsigned long long>(frame.undos));
+void LiveWindow::Panel::timing(const flow::Frame& frame) const {
+  ImGui::TextWrapped(
+      "%llu ticks, %llu commits, %llu undone", static_cast<unsigned long long>(frame.ticks_run),
+      static_cast<unsigned long long>(frame.commits), static_cast<unsigned long long>(frame.undos));
   chart("late", late_ms, "ms");
   chart("uneven", gap_ms, "ms");
   chart("picture", pictures_ms, "ms");
 }
 
-void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) const {
+void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) {
   for (const Side side : {Side::left, Side::right}) {
     const std::size_t slot = flow::Placement::index_of(side);
     const auto& hand = frame.hands[slot];
@@ -278,52 +177,58 @@ void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) co
     ImGui::PushID(static_cast<int>(slot));
     ImGui::PlotHistogram("##joints", bends.data(), static_cast<int>(bends.size()), 0,
                          "thumb to little, degrees", 0.0F, 110.0F,
-                         ImVec2(ImGui::GetContentRegionAvail().x, 50.0F));
+                         ImVec2(ImGui::GetContentRegionAvail().x, em(3.4F)));
     ImGui::PopID();
   }
 }
 
-void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Commands& commands) {
-  constexpr float gap = Panel::gap_px;
+void LiveWindow::Panel::sections(const flow::Frame& frame, const Gauges& gauges,
+                                 SceneWindow& window, PuppetEditor& editor, Commands& commands) {
   const commands::Situation now{frame, gauges.facts};
-  const float high = ImGui::GetIO().DisplaySize.y - 2.0F * gap;
+  const auto draw_puppet = [&] {
+    if (section("Puppet", true)) Panel::puppet(editor, commands);
+  };
+  // While a puppet is edited, nothing is needed as much as this.
+  const bool edits = editor.is_on() && !editor.paints_masks();
+  if (edits) draw_puppet();
+  SettingControls::draw_modes(pending.now);
+  buttons_of(commands::Buttons::hands, now, commands);
+  if (section("Tool", true)) {
+    settings.draw(pending.now);
+    masks(editor, now, commands);
+  }
+  if (section("History", true)) history(frame, commands);
+  if (section("Model", false)) buttons_of(commands::Buttons::model, now, commands);
+  if (!edits) draw_puppet();
+  if (frame.clay.is_clay && section("Contact", true)) Panel::clay(frame);
+  if (section("View", false)) parts(window);
+  if (section("Gloves", false)) hands(frame, gauges);
+  if (section("Timing", false)) timing(frame);
+}
+
+void LiveWindow::Panel::draw(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
+                             PuppetEditor& editor, Commands& commands) {
+  const float gap = em(gap_em), width = em(width_em);
+  const float high = ImGui::GetIO().DisplaySize.y - status_bar_height() - 2.0F * gap;
   ImGui::SetNextWindowPos(ImVec2(gap, gap));
-  ImGui::SetNextWindowSizeConstraints(ImVec2(Panel::width_px, 0.0F),
-                                      ImVec2(Panel::width_px, std::max(40.0F, high)));
-  if (std::exchange(panel_->fold_asked, false)) ImGui::SetNextWindowCollapsed(!panel_->folded);
+  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0.0F), ImVec2(width, std::max(em(3.0F), high)));
+  if (std::exchange(fold_asked, false)) ImGui::SetNextWindowCollapsed(!folded);
   // Without navigation, or Tab, which begins to edit a puppet, would also begin to edit a number.
-  const bool open = ImGui::Begin("Nendo", nullptr,
+  const std::string title = gauges.model + "###panel";
+  const bool open = ImGui::Begin(title.c_str(), nullptr,
                                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
                                      ImGuiWindowFlags_NoNavInputs);
-  panel_->folded = ImGui::IsWindowCollapsed();
-  if (open) {
-    ImGui::TextWrapped("%s   (? for keys)", gauges.model.c_str());
-    panel_->buttons(now, gauges, commands);
-    panel_->parts(*window_);
-    const auto puppet = [&] {
-      if (ImGui::CollapsingHeader("Puppet", ImGuiTreeNodeFlags_DefaultOpen))
-        Panel::puppet(*editor_, commands);
-    };
-    const bool edits =
-        editor_->is_on() && !editor_->paints_masks(); // and then needs nothing as much as this
-    if (edits) puppet();
-    if (ImGui::CollapsingHeader("Shaping", ImGuiTreeNodeFlags_DefaultOpen)) {
-      panel_->settings();
-      panel_->masks(*editor_, now, commands);
-    }
-    if (ImGui::CollapsingHeader("History", ImGuiTreeNodeFlags_DefaultOpen))
-      panel_->history(frame, commands);
-    if (!edits) puppet();
-    if (frame.clay.is_clay && ImGui::CollapsingHeader("Clay", ImGuiTreeNodeFlags_DefaultOpen))
-      Panel::clay(frame);
-    if (ImGui::CollapsingHeader("Timing", ImGuiTreeNodeFlags_DefaultOpen))
-      panel_->timing(frame, gauges);
-    if (ImGui::CollapsingHeader("Gloves", ImGuiTreeNodeFlags_DefaultOpen))
-      panel_->hands(frame, gauges);
-  }
+  folded = ImGui::IsWindowCollapsed();
+  if (open) sections(frame, gauges, window, editor, commands);
   ImGui::End();
+}
+
+void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Commands& commands) {
+  panel_->draw(frame, gauges, *window_, *editor_, commands);
   if (!commands.empty()) panel_->note.clear();
-  panel_->keys(now, *window_, *editor_, commands);
+  panel_->keys({frame, gauges.facts}, *window_, *editor_, commands);
+  panel_->message = panel_->note.empty() ? gauges.report : panel_->note;
+  draw_status_bar(frame, gauges, panel_->message);
   if (const auto change = panel_->pending.ask()) commands.push_back(*change);
 }
 
@@ -338,6 +243,7 @@ void LiveWindow::Panel::ask(const commands::Row& row, const commands::Situation&
 void LiveWindow::Panel::execute(std::string_view name, SceneWindow& window, PuppetEditor& editor,
                                 Commands& commands) {
   if (name == "list keys") keys_shown = !keys_shown;
+  if (name == "search") search.open();
   if (name == "frame all") window.frame_all();
   if (name == "fold panel") fold_asked = true;
   if (name == "edit puppet") editor.turn(!editor.is_on());
@@ -356,17 +262,19 @@ void LiveWindow::Panel::execute(std::string_view name, SceneWindow& window, Pupp
 
 void LiveWindow::Panel::keys(const commands::Situation& now, SceneWindow& window,
                              PuppetEditor& editor, Commands& commands) {
+  const auto take = [&](const commands::Row& row) {
+    if (row.is_for_run())
+      ask(row, now, commands);
+    else
+      execute(row.name, window, editor, commands);
+  };
   if (takes_keys()) {
     window.follow_part_keys();
     window.follow_view_keys();
-    for (const commands::Row& row : commands::table()) {
-      if ((row.places & commands::in_window) == 0 || !is_struck(row)) continue;
-      if (row.is_for_run())
-        ask(row, now, commands);
-      else
-        execute(row.name, window, editor, commands);
-    }
+    for (const commands::Row& row : commands::table())
+      if ((row.places & commands::in_window) != 0 && is_struck(row)) take(row);
   }
+  if (const commands::Row* const found = search.draw(commands::in_window, now)) take(*found);
   if (keys_shown)
     draw_key_list(commands::in_window,
                   "right drag on a hand moves it, with shift turns it, with the wheel\n"

@@ -9,8 +9,10 @@
 #include <nendo/flow/command.hpp>
 
 #include "commands/commands.hpp"
+#include "viewer/command_search.hpp"
 #include "viewer/live_window.hpp"
 #include "viewer/puppet_editor.hpp"
+#include "viewer/setting_controls.hpp"
 
 namespace nendo::viewer {
 
@@ -32,31 +34,34 @@ private:
 };
 
 struct LiveWindow::Panel {
-  static constexpr float gap_px = 10.0F; ///< the gap to the window's edges
-  static constexpr float width_px = 250.0F;
-
   flow::PendingSettings pending;
+  SettingControls settings;
+  CommandSearch search;
   Strip late_ms, gap_ms, pictures_ms;
   bool keys_shown = false;
-  bool one_radius = true;
-  bool one_brush = true;
   std::uint64_t history_shown = 0; ///< the list's version
   bool fold_asked = false;
   bool folded = false;
   std::string note;    ///< replaces Gauges::report until the next command
-  std::string message; ///< the line below the buttons
+  std::string message; ///< in the status bar; empty: the loop's state
 
   /// Returns the width that the panel covers at the window's left.
-  int covered_px() const noexcept { return folded ? 0 : static_cast<int>(gap_px + width_px); }
+  int covered_px() const;
   void follow_settings(const flow::LoopSettings& current);
   void follow(const flow::Frame& frame, double rate_hz);
-  void buttons(const commands::Situation& now, const Gauges& gauges, Commands& commands);
-  /// Draws the buttons of a group, `in_line` per line.
-  void buttons_of(commands::Buttons group, int in_line, const commands::Situation& now,
-                  Commands& commands);
+  /// Draws the panel, in one window of ImGui.
+  void draw(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
+            PuppetEditor& editor, Commands& commands);
+  /// Handles keys, and draws their list and the search.
+  void keys(const commands::Situation& now, SceneWindow& window, PuppetEditor& editor,
+            Commands& commands);
+
+private:
+  void sections(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
+                PuppetEditor& editor, Commands& commands);
+  /// Draws the buttons of a group, two per line.
+  void buttons_of(commands::Buttons group, const commands::Situation& now, Commands& commands);
   static void parts(SceneWindow& window);
-  void settings();
-  void brushes(flow::LoopSettings& chosen);
   /// Lists the history's steps. A click undoes or redoes up to a step.
   void history(const flow::Frame& frame, Commands& commands);
   /// Controls symmetry, and masks of fingertips.
@@ -64,13 +69,8 @@ struct LiveWindow::Panel {
   /// Edits the puppet.
   static void puppet(PuppetEditor& editor, Commands& commands);
   static void clay(const flow::Frame& frame);
-  void timing(const flow::Frame& frame, const Gauges& gauges) const;
-  void hands(const flow::Frame& frame, const Gauges& gauges) const;
-  /// Handles keys, and draws their list.
-  void keys(const commands::Situation& now, SceneWindow& window, PuppetEditor& editor,
-            Commands& commands);
-
-private:
+  void timing(const flow::Frame& frame) const;
+  static void hands(const flow::Frame& frame, const Gauges& gauges);
   void ask(const commands::Row& row, const commands::Situation& now, Commands& commands);
   void execute(std::string_view name, SceneWindow& window, PuppetEditor& editor,
                Commands& commands);

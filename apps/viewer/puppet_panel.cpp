@@ -7,7 +7,9 @@
 #include <nendo/hand/skeleton.hpp>
 
 #include "viewer/command_widgets.hpp"
+#include "viewer/controls.hpp"
 #include "viewer/panel.hpp"
+#include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
@@ -34,7 +36,7 @@ void choose_finger(PuppetEditor& editor) {
 void list_functions(PuppetEditor& editor) {
   const auto& functions = editor.rig().puppet().functions;
   if (functions.empty()) return;
-  ImGui::BeginChild("functions", ImVec2(0.0F, 84.0F), true);
+  ImGui::BeginChild("functions", ImVec2(0.0F, em(6.0F)), true);
   for (std::size_t at = 0; at < functions.size(); ++at) {
     const std::string words = functions[at].name + ": " + functions[at].input.name();
     if (ImGui::Selectable(words.c_str(), at == editor.function())) editor.choose_function(at);
@@ -57,19 +59,19 @@ void name_function(PuppetEditor& editor) {
 
 void edit_buttons(PuppetEditor& editor, Commands& commands) {
   bool mirrors = editor.rig().puppet().mirrors;
-  if (ImGui::Checkbox("mirror", &mirrors)) editor.toggle_mirror();
+  if (check("mirror", mirrors)) editor.toggle_mirror();
   show_help("mirror puppet");
   ImGui::SameLine();
   bool brushes = editor.brushes();
-  if (ImGui::Checkbox("brush masks", &brushes)) editor.toggle_brush();
+  if (check("brush masks", brushes)) editor.toggle_brush();
   show_help("paint masks", "Paint what stays; shift erases.");
-  if (ImGui::Button("Pin")) editor.toggle_pin();
+  if (button("Pin")) editor.toggle_pin();
   show_help("pin point");
   ImGui::SameLine();
-  if (ImGui::Button("Remove")) editor.remove_point();
+  if (button("Remove")) editor.remove_point();
   show_help("delete point");
   ImGui::SameLine();
-  if (ImGui::Button("Save puppet")) commands.emplace_back(flow::SavePuppet{});
+  if (button("Save puppet")) commands.emplace_back(flow::SavePuppet{});
   show_help("save puppet");
 }
 
@@ -79,26 +81,24 @@ void LiveWindow::Panel::masks(PuppetEditor& editor, const commands::Situation& n
                               Commands& commands) {
   const commands::Row& symmetry = *commands::named("symmetry");
   bool symmetric = symmetry.is_on_in(now);
-  if (ImGui::Checkbox("symmetry", &symmetric)) ask(symmetry, now, commands);
+  if (check("symmetry", symmetric)) ask(symmetry, now, commands);
   show_help(symmetry, now);
   if (editor.rig().puppet().is_played()) return; // whose masks are edited with it
-  ImGui::SameLine();
+  ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x / 2.0F);
   bool brushes = editor.brushes();
-  if (ImGui::Checkbox("paint masks", &brushes)) editor.toggle_masks();
+  if (check("paint masks", brushes)) editor.toggle_masks();
   show_help("paint masks", "Paint what stays; shift erases.");
   const commands::Row& clear = *commands::named("mask clear");
-  if (row_button(clear, now, 0.0F)) ask(clear, now, commands);
+  if (row_button(clear, now, share_of_line(2))) ask(clear, now, commands);
   ImGui::SameLine();
   const commands::Row& invert = *commands::named("mask invert");
-  if (row_button(invert, now, 0.0F)) ask(invert, now, commands);
+  if (row_button(invert, now, share_of_line(1))) ask(invert, now, commands);
   if (editor.brushes()) ImGui::TextWrapped("%s", editor.message().c_str());
 }
 
 void LiveWindow::Panel::puppet(PuppetEditor& editor, Commands& commands) {
   const bool is_on = editor.is_on() && !editor.paints_masks();
-  if (ImGui::Button(is_on ? "Play the puppet" : "Edit the puppet",
-                    ImVec2(ImGui::GetContentRegionAvail().x, 0.0F)))
-    editor.turn(!is_on);
+  if (button(is_on ? "Play the puppet" : "Edit the puppet", share_of_line(1))) editor.turn(!is_on);
   show_help("edit puppet", "Click, bend a finger, drag: what each finger does.");
   if (!editor.is_on() || editor.paints_masks()) return;
   if (!editor.message().empty()) ImGui::TextWrapped("%s", editor.message().c_str());

@@ -15,7 +15,9 @@
 
 #include "commands/commands.hpp"
 #include "viewer/command_widgets.hpp"
+#include "viewer/control_list.hpp"
 #include "viewer/gl_objects.hpp"
+#include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
@@ -113,6 +115,13 @@ render::Size pixels_of(GLFWwindow* window) {
   return {std::max(1, size.width), std::max(1, size.height)};
 }
 
+/// Returns how many times denser the window's monitor is than one of 96 dots per inch.
+float scale_of(GLFWwindow* window) {
+  float x = 1.0F, y = 1.0F;
+  glfwGetWindowContentScale(window, &x, &y);
+  return std::clamp(std::max(x, y), 0.5F, 4.0F);
+}
+
 // Mesa's renderers without a graphics card.
 bool draws_itself() {
   const auto* text = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
@@ -147,8 +156,8 @@ void on_button(GLFWwindow* window, int, int action, int) {
 
 SceneWindow::SceneWindow() : quick_(std::make_unique<QuickInput>()) {}
 
-Result<std::unique_ptr<SceneWindow>> SceneWindow::open(const std::string& title, render::Size size,
-                                                       const std::string& instead) {
+Result<std::unique_ptr<SceneWindow>>
+SceneWindow::open(const std::string& title, const WindowLook& look, const std::string& instead) {
 #ifdef GLFW_PLATFORM
   // Where there is no compositor, Wayland's library would add words of its own to the error.
   if (std::getenv("WAYLAND_DISPLAY") == nullptr) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
@@ -160,7 +169,9 @@ Result<std::unique_ptr<SceneWindow>> SceneWindow::open(const std::string& title,
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
   glfwWindowHint(GLFW_SAMPLES, 0); // SmoothTarget has them, on screens without any, too
-  window->window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+  if (!look.scale) glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  window->window_ =
+      glfwCreateWindow(look.size.width, look.size.height, title.c_str(), nullptr, nullptr);
   if (window->window_ == nullptr)
     return without_window("no OpenGL 3.3 here: " + glfw_error(), instead);
   glfwMakeContextCurrent(window->window_);
@@ -172,7 +183,7 @@ Result<std::unique_ptr<SceneWindow>> SceneWindow::open(const std::string& title,
   window->draws_itself_ = draws_itself();
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr; // leaves no file behind
-  ImGui::GetStyle().Colors[ImGuiCol_TextDisabled] = {0.68F, 0.70F, 0.72F, 1.0F}; // to be read, too
+  use_theme(look.theme, look.scale.value_or(scale_of(window->window_)));
   glfwSetWindowUserPointer(window->window_, window->quick_.get());
   if (!imgui_queues_events) { // ImGui's own callbacks call these
     glfwSetKeyCallback(window->window_, on_key);
@@ -214,6 +225,7 @@ void SceneWindow::begin_picture(const render::SceneFrame& scene_frame, bool is_w
   ImGui_ImplGlfw_NewFrame();
   if (simulated_) put_simulated();
   quick_->put();
+  forget_controls();
   ImGui::NewFrame();
 }
 
@@ -270,6 +282,8 @@ void SceneWindow::put_simulated() const {
   put_wheel(static_cast<float>(simulated_->wheel));
   put_modifiers(simulated_->control, simulated_->shift);
   if (simulated_->key > 0) put_key(simulated_->key, true);
+  for (const char32_t letter : simulated_->text)
+    ImGui::GetIO().AddInputCharacter(letter);
 }
 
 void SceneWindow::move_camera() {

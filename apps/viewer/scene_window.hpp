@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "viewer/gl_renderer.hpp"
+#include "viewer/window_look.hpp"
 
 struct GLFWwindow;
 
@@ -24,7 +25,8 @@ struct SimulatedInput {
   double wheel = 0.0;
   bool control = false;
   bool shift = false;
-  int key = 0; ///< the GLFW key that is down; 0: none
+  int key = 0;           ///< the GLFW key that is down; 0: none
+  std::u32string text{}; ///< that is typed into a field
   // Since the last picture:
   std::vector<int> taps;                     ///< keys that were pressed and released
   std::optional<Eigen::Vector2d> clicked_at; ///< the pointer when a button went down
@@ -34,7 +36,7 @@ class SceneWindow {
 public:
   /// Opens a window. Error: failed (no screen, no OpenGL 3.3). The message ends with `instead`, the
   /// alternative without a window.
-  static Result<std::unique_ptr<SceneWindow>> open(const std::string& title, render::Size size,
+  static Result<std::unique_ptr<SceneWindow>> open(const std::string& title, const WindowLook& look,
                                                    const std::string& instead);
   ~SceneWindow();
   SceneWindow(const SceneWindow&) = delete;

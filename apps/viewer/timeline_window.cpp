@@ -193,8 +193,8 @@ TimelineWindow::TimelineWindow(std::unique_ptr<SceneWindow> window)
 TimelineWindow::~TimelineWindow() = default;
 
 Result<std::unique_ptr<TimelineWindow>>
-TimelineWindow::open(const std::string& title, render::Size size, const std::string& instead) {
-  auto window = SceneWindow::open(title, size, instead);
+TimelineWindow::open(const std::string& title, const WindowLook& look, const std::string& instead) {
+  auto window = SceneWindow::open(title, look, instead);
   if (!window) return window.error();
   return std::unique_ptr<TimelineWindow>(new TimelineWindow(*std::move(window)));
 }

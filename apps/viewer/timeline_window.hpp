@@ -15,8 +15,8 @@ class TimelineWindow {
 public:
   /// Opens a window. Error: failed (no screen, no OpenGL 3.3). The message ends with `instead`, the
   /// alternative without a window.
-  static Result<std::unique_ptr<TimelineWindow>> open(const std::string& title, render::Size size,
-                                                      const std::string& instead);
+  static Result<std::unique_ptr<TimelineWindow>>
+  open(const std::string& title, const WindowLook& look, const std::string& instead);
   ~TimelineWindow();
   TimelineWindow(const TimelineWindow&) = delete;
   TimelineWindow& operator=(const TimelineWindow&) = delete;

@@ -69,6 +69,7 @@ inline ImGuiKey imgui_key(int key) {
                               std::pair{GLFW_KEY_DOWN, ImGuiKey_DownArrow},
                               std::pair{GLFW_KEY_HOME, ImGuiKey_Home},
                               std::pair{GLFW_KEY_END, ImGuiKey_End},
+                              std::pair{GLFW_KEY_F3, ImGuiKey_F3},
                               std::pair{GLFW_KEY_MINUS, ImGuiKey_Minus},
                               std::pair{GLFW_KEY_EQUAL, ImGuiKey_Equal},
                               std::pair{GLFW_KEY_SLASH, ImGuiKey_Slash},

@@ -34,7 +34,7 @@ struct Seat {
   DopeSheet strip;
 
   Seat() {
-    auto opened = TimelineWindow::open("test", size, "nothing else");
+    auto opened = TimelineWindow::open("test", {size, Theme::dark, 1.0F}, "nothing else");
     REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
     window = *std::move(opened);
     window->scene_window().set_model(test.loop->changes().layout(),

@@ -8,6 +8,7 @@
 #include "support/flow_fixtures.hpp"
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
+#include "viewer/control_list.hpp"
 #include "viewer/live_window.hpp"
 
 namespace window_panel_test {
@@ -20,8 +21,21 @@ using flow::Request;
 
 namespace {
 
-constexpr Size size{800, 760};
-constexpr int panel_right = 260; // pixels from the window's left
+constexpr Size size{1000, 760};
+
+/// Where the panel ends, in pixels from the window's left.
+int panel_right() {
+  float right = 0.0F;
+  for (const Control& control : controls())
+    if (control.name == "History") right = control.max.x();
+  return static_cast<int>(right) + 12; // the panel's padding
+}
+
+const Control* control_named(const std::string& name) {
+  for (const Control& control : controls())
+    if (control.name == name) return &control;
+  return nullptr;
+}
 
 /// A person before the window.
 struct Person {
@@ -31,8 +45,8 @@ struct Person {
   flow::Frame frame;
   Gauges gauges;
 
-  Person() : frame(test.frame_after_tick(0)) {
-    auto opened = LiveWindow::open("test", size);
+  explicit Person(WindowLook look = {size, Theme::light, 1.0F}) : frame(test.frame_after_tick(0)) {
+    auto opened = LiveWindow::open("test", look);
     REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
     window = *std::move(opened);
     flow::LoopSettings settings;
@@ -70,20 +84,14 @@ struct Person {
     commands.insert(commands.end(), more.begin(), more.end());
     return commands;
   }
-  /// All that the panel's upper buttons ask for, in their order.
-  Commands click_all() {
-    Commands all;
-    for (double y = 60.0; y < 150.0; y += 14.0)
-      for (const double x : {70.0, 190.0})
-        for (const flow::Command& command : click(x, y))
-          if (std::find(all.begin(), all.end(), command) == all.end()) all.push_back(command);
-    return all;
+  /// Clicks the control of this name, which must be there.
+  Commands press(const std::string& name) {
+    const Control* const control = control_named(name);
+    REQUIRE_MESSAGE(control != nullptr, name);
+    const Eigen::Vector2f middle = (control->min + control->max) / 2.0F;
+    return click(static_cast<double>(middle.x()), static_cast<double>(middle.y()));
   }
 };
-
-bool has(const Commands& commands, const flow::Command& command) {
-  return std::find(commands.begin(), commands.end(), command) != commands.end();
-}
 
 } // namespace
 
@@ -102,8 +110,9 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
       list.in_hand = in_hand;
       person.frame.undo_steps = in_hand ? 2 : 1;
       person.frame.redo_steps = 2;
-      std::vector<std::size_t> undos, redos;        // that single clicks asked for
-      for (double y = 654.0; y < 744.0; y += 6.0) { // of the list
+      std::vector<std::size_t> undos, redos; // that single clicks asked for
+      const auto top = static_cast<double>(control_named("History")->max.y());
+      for (double y = top + 4.0; y < top + 110.0; y += 6.0) { // of the list
         const Commands asked = person.click(110.0, y);
         if (asked.empty()) continue;
         const auto count = [&](Request request) {
@@ -128,12 +137,13 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     Person person;
     person.gauges.report = "saved as head-1.obj";
     REQUIRE(person.frame.undo_steps == 0);
-    const Commands without = person.click_all();
-    CHECK(has(without, Request::grab));
-    CHECK(has(without, Request::release));
-    CHECK(has(without, Request::commit));
-    CHECK_FALSE(has(without, Request::undo));
-    CHECK_FALSE(has(without, Request::redo));
+    CHECK(person.press("Grab") == Commands{Request::grab});
+    CHECK(person.press("Release") == Commands{Request::release});
+    CHECK(person.press("Commit") == Commands{Request::commit});
+    for (const std::string grey : {"Undo", "Redo"}) {
+      CHECK(person.press(grey).empty());
+      CHECK_FALSE(control_named(grey)->is_possible);
+    }
     CHECK(person.window->message() == person.gauges.report);
     for (const int key : {GLFW_KEY_U, GLFW_KEY_Z}) {
       CHECK(person.type(key, key == GLFW_KEY_Z) ==
@@ -151,10 +161,10 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
 
     person.frame.undo_steps = 2;
     person.frame.redo_steps = 1;
-    // The page's order, two in a line.
-    const Commands order = person.click_all();
-    CHECK(order == Commands{Request::grab, Request::release, Request::undo, Request::redo,
-                            Request::commit, Request::reset});
+    person.window->show(person.frame, true, person.gauges);
+    CHECK(person.press("Undo") == Commands{Request::undo});
+    CHECK(person.press("Redo") == Commands{Request::redo});
+    CHECK(person.press("Reset") == Commands{Request::reset});
     CHECK(person.type(GLFW_KEY_U) == Commands{Request::undo});
     CHECK(person.type(GLFW_KEY_Z, true) == Commands{Request::undo});
     CHECK(person.type(GLFW_KEY_R) == Commands{Request::redo});
@@ -190,10 +200,11 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     if (!screen.is_there()) return;
     Person person;
     const auto columns = [&] { // the first and the last that show something
-      const Image image = person.window->scene_window().silhouette(size);
+      const Image image =
+          person.window->scene_window().silhouette(person.window->scene_window().scene_size());
       std::pair<int, int> range{size.width, -1};
       for (int x = 0; x < size.width; ++x)
-        for (int y = 0; y < size.height; ++y)
+        for (int y = 0; y < image.size().height; ++y)
           if (image.at(x, y)[0] > 127) range = {std::min(range.first, x), x};
       return range;
     };
@@ -203,7 +214,7 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
       CHECK(last < size.width);
       CHECK(std::abs((first + last) / 2.0 - (covered + size.width) / 2.0) < 25.0);
     };
-    is_framed(panel_right);
+    is_framed(panel_right());
     SimulatedInput drag; // away
     drag.pointer = {500.0, 300.0};
     drag.shift = true;
@@ -215,10 +226,10 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     drag.pointer.x() -= 300.0;
     drag.wheel = 4.0;
     person.give(drag);
-    CHECK(columns().first < panel_right);
+    CHECK(columns().first < panel_right());
     const View view = person.window->scene_window().camera().view;
     person.type(GLFW_KEY_HOME);
-    is_framed(panel_right);
+    is_framed(panel_right());
     CHECK(person.window->scene_window().camera().view.azimuth_deg == view.azimuth_deg);
     CHECK(person.window->scene_window().camera().view.elevation_deg == view.elevation_deg);
 
@@ -227,34 +238,98 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     is_framed(0);
     person.type(GLFW_KEY_P);
     person.type(GLFW_KEY_HOME);
-    is_framed(panel_right);
+    is_framed(panel_right());
   }
 
-  TEST_CASE("whatever the panel says is in the panel, a warning before a change, too") {
+  TEST_CASE("what the window says is in the bar at its bottom, and moves nothing") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
     Person person;
     const Image before = person.window->scene_window().screenshot();
-    person.type(GLFW_KEY_M);
     person.gauges.report = "saved as /a/very/long/path/that/is/longer/than/the/panel/is/wide.obj";
     person.type(GLFW_KEY_G);
+    REQUIRE(control_named("message") != nullptr);
+    const auto bar = static_cast<int>(control_named("message")->min.y()) - 10;
     const Image after = person.window->scene_window().screenshot();
-    bool beside_changed = false;
-    int changed = 0;
+    int above = 0, inside = 0;
     for (int y = 0; y < size.height; ++y)
-      for (int x = 0; x < size.width; ++x) {
-        if (before.at(x, y) == after.at(x, y)) continue;
-        ++changed;
-        beside_changed = beside_changed || x > panel_right;
+      for (int x = 0; x < size.width; ++x)
+        if (!(before.at(x, y) == after.at(x, y))) ++(y < bar ? above : inside);
+    CHECK(above == 0);
+    CHECK(inside > 500);
+  }
+
+  TEST_CASE("no two controls overlap and no text is cut, in any mode, at any size and scale") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    struct Case {
+      Size size;
+      float scale;
+    };
+    for (const Case& one : {Case{{1280, 720}, 1.0F}, Case{{1920, 1080}, 1.0F},
+                            Case{{1920, 1080}, 2.0F}, Case{{3840, 2160}, 2.0F}}) {
+      Person person({one.size, Theme::dark, one.scale});
+      for (const flow::Mode mode :
+           {flow::Mode::type1, flow::Mode::type2, flow::Mode::clay, flow::Mode::parts}) {
+        person.frame.settings = {};
+        person.frame.settings.mode = mode;
+        person.frame.settings.radius_m.fill(0.1);
+        person.window->show(person.frame, true, person.gauges);
+        person.window->show(person.frame, false, person.gauges);
+        const auto shown = controls();
+        CHECK(shown.size() > 15);
+        for (std::size_t at = 0; at < shown.size(); ++at) {
+          CAPTURE(shown[at].name);
+          CHECK_FALSE(shown[at].is_cut);
+          for (std::size_t other = 0; other < at; ++other) {
+            const auto overlap =
+                shown[at].max.cwiseMin(shown[other].max) - shown[at].min.cwiseMax(shown[other].min);
+            CHECK_MESSAGE(overlap.minCoeff() <= 0.0F, shown[other].name);
+          }
+        }
       }
-    CHECK(changed > 1000);
-    CHECK_FALSE(beside_changed);
-    // No letter touches the frame: a margin at the panel's right stays as empty as it is.
-    int written = 0;
-    for (int y = 40; y < size.height - 20; ++y)
-      for (int x = panel_right - 9; x < panel_right - 1; ++x)
-        if (after.at(x, y)[0] < 110 && after.at(x, y)[1] < 110) ++written;
-    CHECK(written == 0);
+    }
+  }
+
+  TEST_CASE("a mode shows the settings that work in it, and no other") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Person person;
+    const auto names_in = [&](flow::Mode mode) {
+      person.frame.settings.mode = mode;
+      person.window->show(person.frame, true, person.gauges);
+      person.window->show(person.frame, false, person.gauges);
+      std::vector<std::string> names;
+      for (const std::string name : {"radius", "kernel", "brush", "whole hand", "never folds",
+                                     "volume", "closed pinches", "smooth hands"})
+        if (control_named(name) != nullptr) names.push_back(name);
+      return names;
+    };
+    using Names = std::vector<std::string>;
+    CHECK(names_in(flow::Mode::type1) == Names{"radius", "kernel", "whole hand", "never folds",
+                                               "volume", "closed pinches", "smooth hands"});
+    CHECK(names_in(flow::Mode::type2) == Names{"radius", "kernel", "brush", "never folds", "volume",
+                                               "closed pinches", "smooth hands"});
+    CHECK(names_in(flow::Mode::clay) == Names{"smooth hands"});
+    CHECK(names_in(flow::Mode::parts) == Names{"closed pinches", "smooth hands"});
+  }
+
+  TEST_CASE("F3 finds a command by words of its name or its help") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Person person;
+    CHECK(person.type(GLFW_KEY_F3).empty());
+    for (int picture = 0; picture < 3; ++picture)
+      person.window->show(person.frame, false, person.gauges);
+    SimulatedInput words;
+    for (const int letter : {GLFW_KEY_S, GLFW_KEY_U, GLFW_KEY_B}) {
+      words.text.push_back(static_cast<char32_t>(letter + 'a' - 'A'));
+      person.give(words);
+      words.text.clear();
+    }
+    const Commands asked = person.type(GLFW_KEY_ENTER);
+    CHECK(asked == Commands{flow::Subdivide{}});
+    CHECK(person.type(GLFW_KEY_G) == Commands{Request::grab}); // the list has closed
   }
 }
 

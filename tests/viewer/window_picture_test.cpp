@@ -43,7 +43,7 @@ struct Look {
   SceneFrame no_hands;
 
   explicit Look(const deform::Mesh& model) : mesh(model), layout(model.vertices), builder(model) {
-    auto opened = SceneWindow::open("test", size, "nothing else");
+    auto opened = SceneWindow::open("test", {size, Theme::light, 1.0F}, "nothing else");
     REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
     window = *std::move(opened);
     window->set_model(layout, builder);

@@ -40,7 +40,7 @@ TEST_SUITE("window") {
   TEST_CASE("without a screen there is one line that says what to do instead") {
     ::unsetenv("DISPLAY");
     ::unsetenv("WAYLAND_DISPLAY");
-    const auto window = LiveWindow::open("test", {320, 240});
+    const auto window = LiveWindow::open("test", {{320, 240}, Theme::light, 1.0F});
     REQUIRE_FALSE(window);
     CHECK(window.error().code == Errc::failed);
     CHECK(window.error().message.find("nendo picture") != std::string::npos);
@@ -56,7 +56,7 @@ TEST_SUITE("window") {
     }
     test::LoopUnderTest test(flow::Mode::type1);
     constexpr Size size{400, 300};
-    auto opened = LiveWindow::open("test", size);
+    auto opened = LiveWindow::open("test", {size, Theme::light, 1.0F});
     REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
     LiveWindow& window = **opened;
     const SceneBuilder builder(test.model, test.placement.units_per_metre);
@@ -102,7 +102,7 @@ TEST_SUITE("window") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
     test::LoopUnderTest test(flow::Mode::type1);
-    auto opened = LiveWindow::open("test", {400, 300});
+    auto opened = LiveWindow::open("test", {{400, 300}, Theme::light, 1.0F});
     REQUIRE(opened);
     LiveWindow& window = **opened;
     flow::LoopSettings settings;
@@ -175,8 +175,8 @@ TEST_SUITE("window") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
     test::LoopUnderTest test(flow::Mode::type1);
-    constexpr Size size{800, 600};
-    auto opened = LiveWindow::open("test", size);
+    constexpr Size size{1000, 700};
+    auto opened = LiveWindow::open("test", {size, Theme::light, 1.0F});
     REQUIRE(opened);
     LiveWindow& window = **opened;
     const SceneBuilder builder(test.model, test.placement.units_per_metre);
@@ -185,12 +185,13 @@ TEST_SUITE("window") {
     const flow::Frame& frame = test.frame_after_tick(0);
     window.show(frame, true, {});
     SimulatedInput input;
+    const Size scene = window.scene_window().scene_size(); // above the status bar
     for (const auto& joint : frame.hands[1].pose.joints) { // the one that the panel covers least
       const Eigen::Vector4d clip =
-          window.scene_window().camera().projection(1.0 * size.width / size.height) *
+          window.scene_window().camera().projection(1.0 * scene.width / scene.height) *
           (joint.translation() - builder.origin_m()).homogeneous();
-      const Eigen::Vector2d pixel((1.0 + clip.x() / clip.w()) / 2 * size.width,
-                                  (1.0 - clip.y() / clip.w()) / 2 * size.height);
+      const Eigen::Vector2d pixel((1.0 + clip.x() / clip.w()) / 2 * scene.width,
+                                  (1.0 - clip.y() / clip.w()) / 2 * scene.height);
       if (pixel.x() > input.pointer.x()) input.pointer = pixel;
     }
     window.scene_window().simulate(input);
@@ -214,7 +215,7 @@ TEST_SUITE("window") {
     if (!screen.is_there()) return;
     test::LoopUnderTest test(flow::Mode::type1);
     constexpr Size size{800, 600};
-    auto opened = LiveWindow::open("test", size);
+    auto opened = LiveWindow::open("test", {size, Theme::light, 1.0F});
     REQUIRE(opened);
     LiveWindow& window = **opened;
     const SceneBuilder builder(test.model, test.placement.units_per_metre);

@@ -1,0 +1,158 @@
+#include "viewer/controls.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "viewer/theme.hpp"
+
+namespace nendo::viewer {
+namespace {
+
+constexpr float label_em = 6.4F;
+
+std::vector<Control>& noted() {
+  static std::vector<Control> all;
+  return all;
+}
+
+float width_of(std::string_view text) {
+  return ImGui::CalcTextSize(text.data(), text.data() + text.size()).x;
+}
+
+/// The part of the rectangle in which ImGui draws now.
+void clip(Control& control) {
+  const ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 low = list.GetClipRectMin(), high = list.GetClipRectMax();
+  control.min = control.min.cwiseMax(Eigen::Vector2f(low.x, low.y));
+  control.max = control.max.cwiseMin(Eigen::Vector2f(high.x, high.y));
+}
+
+/// Writes the label, and leaves the rest of the line to a field.
+void label(std::string_view text) {
+  const float left = ImGui::GetCursorPosX();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  note_control("label " + std::string(text), text, width_of(text) - em(label_em - 0.2F));
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(left + em(label_em));
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
+}
+
+/// Fills as much of the field as the value is of the range, below the number.
+void draw_share(float share) {
+  const ImVec2 low = ImGui::GetCursorScreenPos();
+  const float width = std::clamp(share, 0.0F, 1.0F) * ImGui::CalcItemWidth();
+  ImVec4 colour = accent();
+  colour.w = 0.22F;
+  ImGui::GetWindowDrawList()->AddRectFilled(low, {low.x + width, low.y + ImGui::GetFrameHeight()},
+                                            ImGui::GetColorU32(colour),
+                                            ImGui::GetStyle().FrameRounding);
+}
+
+} // namespace
+
+std::span<const Control> controls() noexcept {
+  return noted();
+}
+
+void forget_controls() noexcept {
+  noted().clear();
+}
+
+void note_control(std::string_view name, std::string_view text, float around) {
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  Control control{std::string(name), {low.x, low.y}, {high.x, high.y}};
+  constexpr float rounding_px = 0.5F;
+  const float right = ImGui::GetWindowDrawList()->GetClipRectMax().x;
+  control.is_cut =
+      width_of(text) + around > high.x - low.x + rounding_px || high.x > right + rounding_px;
+  clip(control);
+  if ((control.min.array() < control.max.array()).all()) noted().push_back(std::move(control));
+}
+
+bool button(std::string_view name, float width, bool is_possible) {
+  const std::string text(name);
+  ImGui::BeginDisabled(!is_possible);
+  const bool pressed = ImGui::Button(text.c_str(), ImVec2(width, 0.0F));
+  ImGui::EndDisabled();
+  note_control(name, name, 2.0F);
+  if (!noted().empty()) noted().back().is_possible = is_possible;
+  return pressed && is_possible;
+}
+
+bool check(std::string_view name, bool& value) {
+  const bool changed = ImGui::Checkbox(std::string(name).c_str(), &value);
+  note_control(name, name, ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x);
+  return changed;
+}
+
+bool section(std::string_view name, bool is_open_at_first) {
+  const bool is_open = ImGui::CollapsingHeader(
+      std::string(name).c_str(), is_open_at_first ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+  note_control(name, name, ImGui::GetFrameHeight());
+  return is_open;
+}
+
+bool one_of(std::span<const std::string_view> names, std::size_t& chosen, std::size_t in_line) {
+  bool changed = false;
+  const float width = share_of_line(in_line);
+  for (std::size_t at = 0; at < names.size(); ++at) {
+    if (at % in_line != 0) ImGui::SameLine();
+    const bool is_chosen = at == chosen;
+    if (is_chosen) {
+      ImGui::PushStyleColor(ImGuiCol_Button, accent());
+      ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0F, 1.0F, 1.0F, 1.0F));
+    }
+    const bool pressed = button(names[at], width);
+    if (is_chosen) ImGui::PopStyleColor(2);
+    if (!pressed) continue;
+    changed = changed || !is_chosen;
+    chosen = at;
+  }
+  return changed;
+}
+
+bool number_field(std::string_view text, float& value, float min, float max, const char* format) {
+  label(text);
+  draw_share((value - min) / (max - min));
+  const float before = value;
+  ImGui::PushID(text.data(), text.data() + text.size());
+  ImGui::DragFloat("##number", &value, (max - min) / 200.0F, min, max, format,
+                   ImGuiSliderFlags_AlwaysClamp);
+  ImGui::PopID();
+  const ImGuiIO& io = ImGui::GetIO();
+  if (ImGui::IsItemHovered() && io.KeyCtrl && io.MouseWheel != 0.0F)
+    value = std::clamp(value + io.MouseWheel * (max - min) / 50.0F, min, max);
+  note_control(text, "");
+  return value != before;
+}
+
+bool choice_field(std::string_view text, std::span<const std::string_view> names,
+                  std::size_t& chosen) {
+  label(text);
+  bool changed = false;
+  const std::string now(names[chosen]);
+  ImGui::PushID(text.data(), text.data() + text.size());
+  const bool is_open = ImGui::BeginCombo("##choice", now.c_str());
+  if (is_open) {
+    for (std::size_t at = 0; at < names.size(); ++at) {
+      if (!ImGui::Selectable(std::string(names[at]).c_str(), at == chosen)) continue;
+      changed = at != chosen;
+      chosen = at;
+    }
+    ImGui::EndCombo();
+  }
+  ImGui::PopID();
+  if (!is_open) note_control(text, now, ImGui::GetFrameHeight());
+  return changed;
+}
+
+float share_of_line(std::size_t count) {
+  const auto number = static_cast<float>(count);
+  const float space = ImGui::GetStyle().ItemSpacing.x;
+  return (ImGui::GetContentRegionAvail().x - (number - 1.0F) * space) / number;
+}
+
+} // namespace nendo::viewer

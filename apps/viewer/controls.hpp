@@ -1,0 +1,38 @@
+#pragma once
+// Buttons, fields and choices of the windows: a label at the left of a field, and text that fits.
+// Each notes its name and rectangle, so that tests press it by its name, and find what overlaps.
+// Main thread.
+
+#include <span>
+#include <string_view>
+
+#include <imgui.h>
+
+#include "viewer/control_list.hpp"
+
+namespace nendo::viewer {
+
+/// Notes the latest item of ImGui. text: what it shows. around: the width beside the text.
+void note_control(std::string_view name, std::string_view text, float around = 0.0F);
+
+/// Width 0: as wide as its text.
+bool button(std::string_view name, float width = 0.0F, bool is_possible = true);
+/// A box with its name at the right.
+bool check(std::string_view name, bool& value);
+/// A header that opens and closes what follows it. Returns whether it is open.
+bool section(std::string_view name, bool is_open_at_first);
+/// Buttons in lines of `in_line`, of which one is chosen.
+bool one_of(std::span<const std::string_view> names, std::size_t& chosen, std::size_t in_line);
+
+// Fields with a label at the left:
+
+/// A number that is dragged, typed after a double click, or changed by the wheel with ctrl.
+bool number_field(std::string_view label, float& value, float min, float max, const char* format);
+/// A list of names, of which one is chosen.
+bool choice_field(std::string_view label, std::span<const std::string_view> names,
+                  std::size_t& chosen);
+
+/// Returns the width of each of `count` controls in a line.
+float share_of_line(std::size_t count);
+
+} // namespace nendo::viewer
