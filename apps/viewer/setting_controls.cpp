@@ -134,13 +134,10 @@ void SettingControls::follow(const flow::LoopSettings& settings) noexcept {
 }
 
 void SettingControls::draw_modes(flow::LoopSettings& chosen) {
-  constexpr std::array<std::string_view, flow::mode_count> names{"Pull", "Strokes", "Clay",
-                                                                 "Parts"};
   auto mode = static_cast<std::size_t>(chosen.mode);
-  if (one_of(names, mode, names.size())) chosen.mode = static_cast<flow::Mode>(mode);
-  show_help("next mode",
-            "Pull: the surface follows the fingertips from rest. Strokes: it follows their paths. "
-            "Clay: whole hands press it. Parts: a hand that closes takes the part under it.");
+  if (one_of(flow::mode_labels, mode, flow::mode_count))
+    chosen.mode = static_cast<flow::Mode>(mode);
+  show_help("next mode", flow::modes_help);
 }
 
 void SettingControls::draw(flow::LoopSettings& chosen) {

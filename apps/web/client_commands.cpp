@@ -230,6 +230,22 @@ std::string limits(const flow::Range& range) {
   return ", min: " + decimal_text(range.min) + ", max: " + decimal_text(range.max);
 }
 
+std::string modes_of(const flow::SettingText& setting) {
+  std::string list = ", modes: [";
+  for (std::uint8_t number = 0; number < flow::mode_count; ++number)
+    if (const auto mode = static_cast<flow::Mode>(number); setting.works_in(mode))
+      list += quoted(name_of(mode)) + ',';
+  return list + "]";
+}
+
+std::string mode_list() {
+  std::string list = "{ ";
+  for (std::uint8_t number = 0; number < flow::mode_count; ++number)
+    list += std::string(name_of(static_cast<flow::Mode>(number))) + ": " +
+            quoted(flow::mode_labels[number]) + ", ";
+  return list + "}";
+}
+
 std::string brush_list() {
   std::string list = "[";
   for (std::uint8_t number = 0; number < deform::brush_count; ++number)
@@ -257,13 +273,16 @@ std::string page_commands() {
 std::string page_settings() {
   std::string list = "{";
   flow::for_each_setting([&](const auto& setting) {
-    list += "\n  " + std::string(setting.name) + ": { label: " + quoted(setting.label);
+    list += "\n  " + std::string(setting.name) + ": { label: " + quoted(setting.label) +
+            modes_of(setting);
     if constexpr (requires { setting.handy; })
       list += limits(setting.handy);
     else if constexpr (requires { setting.range; })
       list += limits(setting.range);
     if constexpr (std::is_same_v<decltype(setting), const flow::BrushesSetting&>)
       list += ", choices: " + brush_list();
+    if constexpr (std::is_same_v<decltype(setting), const flow::ChoiceSetting<flow::Mode>&>)
+      list += ", choices: " + mode_list();
     list += " },";
   });
   return list + "\n}";

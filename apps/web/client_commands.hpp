@@ -43,8 +43,9 @@ Result<ClientCommand> parse_command(std::string_view text);
 /// buttonOn, isForRun and isSetting.
 std::string page_commands();
 
-/// Returns a JavaScript object with the settings by name. Each has label; those with a slider have
-/// min and max, and the brushes have choices.
+/// Returns a JavaScript object with the settings by name. Each has label, and the modes in which it
+/// works; those with a slider have min and max, the brushes have choices, and the mode has the
+/// labels of its choices by their names.
 std::string page_settings();
 
 /// Returns the text of the commands message: a line for each command that is on or not possible, in

@@ -294,8 +294,11 @@ TEST_SUITE("commands") {
       CHECK(list.find("\n  " + name + ": { label: \"" + label + "\"") != std::string::npos);
       CHECK(label.find_first_of("\"\\<") == std::string::npos);
     });
-    CHECK(list.find("keep_volume: { label: \"volume\", min: 0.0, max: 1.0 }") != std::string::npos);
-    CHECK(list.find("brushes: { label: \"brush\", choices: [\"pull\",\"none\",") !=
+    CHECK(list.find("keep_volume: { label: \"volume\", modes: [\"type1\",\"type2\",], min: 0.0, "
+                    "max: 1.0 }") != std::string::npos);
+    CHECK(list.find("brushes: { label: \"brush\", modes: [\"type2\",], choices: "
+                    "[\"pull\",\"none\",") != std::string::npos);
+    CHECK(list.find("choices: { type1: \"Pull\", type2: \"Strokes\", clay: \"Clay\", ") !=
           std::string::npos);
     const std::string html = content_of("apps/web/page/index.html");
     for (const std::string& name : attributes_in(html, "data-label"))
@@ -323,7 +326,7 @@ TEST_SUITE("commands") {
         }
       at = next;
     }
-    CHECK(values == 14); // four modes, four kernels, and three boxes on and off
+    CHECK(values == 16); // four modes, four kernels, and four boxes on and off
   }
 
   TEST_CASE(

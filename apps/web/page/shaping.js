@@ -9,6 +9,7 @@ class Shaping {
     Object.assign(this, { ask, live: false, inForce: null, shown: null, wanted: null, due: new Set(), askedAt: -Infinity })
     this.inputs = element('shaping').elements
     for (const part of document.querySelectorAll('[data-label]')) part.textContent = SETTINGS[part.dataset.label].label
+    for (const radio of this.inputs.mode) radio.nextElementSibling.textContent = SETTINGS.mode.choices[radio.value]
     for (const name of ['brush_strength', 'keep_volume']) {
       const { min, max } = SETTINGS[name]
       Object.assign(this.inputs[name], { min, max })
@@ -80,12 +81,18 @@ class Shaping {
   chooseNamed(input) {
     const value = input.type === 'checkbox' && !input.checked ? input.dataset.off : input.value
     this.change(input.name, value)
-    if (input.name !== 'brushes') return
-    this.change('mode', 'type2') // which has brushes
-    this.inputs.mode.value = 'type2'
+  }
+  // What works in the mode.
+  showTools(mode) {
+    for (const [name, { modes }] of Object.entries(SETTINGS)) {
+      const input = this.inputs[name]
+      const parts = [...document.querySelectorAll(`[data-of=${name}]`), ...(input?.closest ? [input.closest('label')] : [])]
+      for (const part of parts) part.hidden = !modes.includes(mode)
+    }
   }
   show() {
     const { wanted } = this, one = element('one-radius').checked
+    this.showTools(wanted.mode)
     for (const { label, name, range, output, at } of this.sliders) {
       const radius = wanted.radius_m[at]
       label.hidden = one && at > 0

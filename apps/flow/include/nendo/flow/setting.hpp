@@ -27,6 +27,12 @@ constexpr std::uint8_t in_mode(Mode mode) noexcept {
   return static_cast<std::uint8_t>(1U << static_cast<unsigned>(mode));
 }
 inline constexpr std::uint8_t in_all_modes = (1U << mode_count) - 1U;
+/// The modes in windows and on the page, in their order, and what they are.
+inline constexpr std::array<std::string_view, mode_count> mode_labels{"Pull", "Strokes", "Clay",
+                                                                      "Parts"};
+inline constexpr std::string_view modes_help =
+    "Pull: the surface follows the fingertips from rest. Strokes: it follows their paths. Clay: "
+    "whole hands press it. Parts: a hand that closes takes the part under it.";
 inline constexpr std::uint8_t by_points = in_mode(Mode::type1) | in_mode(Mode::type2);
 
 /// The strings of a setting for messages, files and widgets, and where it works.
