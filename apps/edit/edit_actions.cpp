@@ -99,8 +99,9 @@ struct Options {
   std::string hand; ///< side of the first selected key
   std::optional<unsigned> key;
   std::optional<double> at_s;
-  std::string screenshot;   ///< where the last picture goes, .png; empty: nowhere
-  std::uint32_t frames = 0; ///< pictures after which it ends; 0: as the person likes
+  std::string theme{"light"}; ///< or dark
+  std::string screenshot;     ///< where the last picture goes, .png; empty: nowhere
+  std::uint32_t frames = 0;   ///< pictures after which it ends; 0: as the person likes
 };
 
 #ifdef NENDO_WINDOW
@@ -177,7 +178,7 @@ int view_timeline(const Options& options) {
   if (const auto begun = begin_at(options, session); !begun) return cli::report(begun.error());
   auto window = viewer::TimelineWindow::open(
       "Nendo: " + std::filesystem::path(*out).filename().string(),
-      {window_size, viewer::Theme::dark},
+      {window_size, options.theme == "dark" ? viewer::Theme::dark : viewer::Theme::light},
       "on a box without a screen `nendo picture` draws a timeline, `nendo export` animates it, and "
       "the other commands of `nendo edit` change it");
   if (!window) return cli::report(window.error());
@@ -354,6 +355,7 @@ void add_timeline_view(cli::Command& edit) {
   command.add_duration("--at", options->at_s, "First position of the play head, in seconds");
   command.add_option("--hand", options->hand, "left or right, for --key");
   command.add_option("--key", options->key, "Number of the key that is selected at first");
+  command.add_option("--theme", options->theme, "The window's colours").one_of({"light", "dark"});
   command.add_option("--screenshot", options->screenshot,
                      "Where the window's last picture goes, .png");
   command.add_option(

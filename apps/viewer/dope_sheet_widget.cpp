@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include "viewer/command_widgets.hpp"
+#include "viewer/theme.hpp"
 
 namespace nendo::viewer {
 namespace {
@@ -19,20 +20,38 @@ struct StripLook {
   std::optional<Retiming> shaded; ///< highlighted times
 };
 
-constexpr ImU32 ground = IM_COL32(27, 29, 33, 255);
-constexpr ImU32 lane_ground = IM_COL32(38, 41, 47, 255);
-constexpr ImU32 line = IM_COL32(66, 70, 78, 255);
-constexpr ImU32 words = IM_COL32(200, 204, 210, 255);
-constexpr ImU32 computed = IM_COL32(70, 150, 140, 255);
-constexpr ImU32 not_computed = IM_COL32(58, 60, 66, 255);
-constexpr ImU32 key_colour = IM_COL32(150, 180, 215, 255);
-constexpr ImU32 key_edge = IM_COL32(20, 22, 26, 255);
-constexpr ImU32 pointed_colour = IM_COL32(205, 222, 242, 255);
-constexpr ImU32 selected_colour = IM_COL32(255, 160, 40, 255);
-constexpr ImU32 selected_edge = IM_COL32(255, 240, 215, 255);
-constexpr ImU32 mark_colour = IM_COL32(205, 190, 110, 255);
-constexpr ImU32 head_colour = IM_COL32(235, 95, 70, 255);
-constexpr ImU32 shade = IM_COL32(255, 160, 40, 38);
+struct StripColours {
+  ImU32 ground, lane_ground, line, words, computed, not_computed, key_colour, key_edge,
+      pointed_colour, selected_colour, selected_edge, mark_colour, head_colour, shade;
+};
+constexpr StripColours light_strip{.ground = IM_COL32(243, 244, 246, 255),
+                                   .lane_ground = IM_COL32(228, 231, 235, 255),
+                                   .line = IM_COL32(201, 207, 212, 255),
+                                   .words = IM_COL32(60, 68, 76, 255),
+                                   .computed = IM_COL32(70, 150, 140, 255),
+                                   .not_computed = IM_COL32(205, 209, 214, 255),
+                                   .key_colour = IM_COL32(110, 145, 190, 255),
+                                   .key_edge = IM_COL32(250, 251, 252, 255),
+                                   .pointed_colour = IM_COL32(70, 110, 165, 255),
+                                   .selected_colour = IM_COL32(226, 125, 20, 255),
+                                   .selected_edge = IM_COL32(90, 50, 10, 255),
+                                   .mark_colour = IM_COL32(132, 110, 10, 255),
+                                   .head_colour = IM_COL32(200, 62, 40, 255),
+                                   .shade = IM_COL32(226, 125, 20, 46)};
+constexpr StripColours dark_strip{.ground = IM_COL32(27, 29, 33, 255),
+                                  .lane_ground = IM_COL32(38, 41, 47, 255),
+                                  .line = IM_COL32(66, 70, 78, 255),
+                                  .words = IM_COL32(200, 204, 210, 255),
+                                  .computed = IM_COL32(70, 150, 140, 255),
+                                  .not_computed = IM_COL32(58, 60, 66, 255),
+                                  .key_colour = IM_COL32(150, 180, 215, 255),
+                                  .key_edge = IM_COL32(20, 22, 26, 255),
+                                  .pointed_colour = IM_COL32(205, 222, 242, 255),
+                                  .selected_colour = IM_COL32(255, 160, 40, 255),
+                                  .selected_edge = IM_COL32(255, 240, 215, 255),
+                                  .mark_colour = IM_COL32(205, 190, 110, 255),
+                                  .head_colour = IM_COL32(235, 95, 70, 255),
+                                  .shade = IM_COL32(255, 160, 40, 38)};
 
 class StripDrawing {
 public:
@@ -67,22 +86,22 @@ private:
   }
 
   void grounds() const {
-    list_.AddRectFilled(at(0.0, 0.0), at(width(), height()), ground);
+    list_.AddRectFilled(at(0.0, 0.0), at(width(), height()), colours_.ground);
     const double begin = std::max(DopeSheet::left, x_of(0.0));
     const double end = std::min(width(), x_of(view_.duration_s));
     for (std::size_t lane = 0; lane <= view_.lanes.size(); ++lane) {
       const double middle = DopeSheet::middle_of(lane);
       constexpr double half = DopeSheet::lane / 2 - 1.0;
-      list_.AddRectFilled(at(begin, middle - half), at(end, middle + half), lane_ground);
+      list_.AddRectFilled(at(begin, middle - half), at(end, middle + half), colours_.lane_ground);
       const bool events = lane == view_.lanes.size();
-      text(6.0, middle - 7.0, words,
+      text(6.0, middle - 7.0, colours_.words,
            events ? "events" : std::string(name_of(view_.lanes[lane].side)).c_str());
     }
     constexpr double top = DopeSheet::ruler - 5.0;
     constexpr double bottom = DopeSheet::ruler - 1.0;
-    list_.AddRectFilled(at(begin, top), at(end, bottom), not_computed);
+    list_.AddRectFilled(at(begin, top), at(end, bottom), colours_.not_computed);
     const double so_far = std::clamp(x_of(view_.computed_s), begin, end);
-    list_.AddRectFilled(at(begin, top), at(so_far, bottom), computed);
+    list_.AddRectFilled(at(begin, top), at(so_far, bottom), colours_.computed);
   }
 
   // A line at each; the numbers come later, over the play head.
@@ -95,7 +114,8 @@ private:
   }
 
   void rule() const {
-    each_step([this](double time_s) { upright(strip_.x_of(time_s), 4.0, height(), line); });
+    each_step(
+        [this](double time_s) { upright(strip_.x_of(time_s), 4.0, height(), colours_.line); });
   }
 
   void numbers() const {
@@ -106,14 +126,14 @@ private:
       std::snprintf(label, sizeof label, "%.*f", decimals, time_s);
       const double x = strip_.x_of(time_s) + 3.0;
       const auto long_px = static_cast<double>(ImGui::CalcTextSize(label).x);
-      text(std::min(x, width() - long_px - 2.0), 3.0, words, label);
+      text(std::min(x, width() - long_px - 2.0), 3.0, colours_.words, label);
     });
   }
 
   void shade_times(const Retiming& times) const {
     const double begin = std::max(DopeSheet::left, x_of(times.from_s));
     list_.AddRectFilled(at(begin, DopeSheet::ruler),
-                        at(std::max(begin, x_of(times.to_s)), height()), shade);
+                        at(std::max(begin, x_of(times.to_s)), height()), colours_.shade);
   }
 
   void keys_of(std::size_t lane) const {
@@ -125,12 +145,13 @@ private:
     const double pixel_s = strip_.time_at(DopeSheet::left + 1.0) - strip_.first_s();
     for (auto key = at_time(strip_.first_s() - 8.0 * pixel_s);
          key != keys_s.end() && *key <= strip_.last_s() + 8.0 * pixel_s;) {
-      diamond(lane, static_cast<std::size_t>(key - keys_s.begin()), key_colour, key_edge);
+      diamond(lane, static_cast<std::size_t>(key - keys_s.begin()), colours_.key_colour,
+              colours_.key_edge);
       key = std::max(key + 1, at_time(*key + min_gap * pixel_s));
     }
     for (const auto& [marked, colour, edge] :
-         {std::tuple{look_.pointed_at, pointed_colour, key_edge},
-          std::tuple{view_.selected, selected_colour, selected_edge}})
+         {std::tuple{look_.pointed_at, colours_.pointed_colour, colours_.key_edge},
+          std::tuple{view_.selected, colours_.selected_colour, colours_.selected_edge}})
       if (marked && marked->lane == lane && marked->key < keys_s.size())
         diamond(lane, marked->key, colour, edge);
   }
@@ -155,13 +176,13 @@ private:
     for (std::size_t mark = 0; mark < view_.marks.size(); ++mark) {
       const double x = strip_.x_of(view_.marks[mark].time_s);
       if (x < DopeSheet::left || x > width()) continue;
-      list_.AddRectFilled(at(x - 1.0, y - 10.0), at(x + 1.0, y + 10.0), mark_colour);
+      list_.AddRectFilled(at(x - 1.0, y - 10.0), at(x + 1.0, y + 10.0), colours_.mark_colour);
       const char* const name = view_.marks[mark].name.c_str();
       const auto long_px = static_cast<double>(ImGui::CalcTextSize(name).x);
       const bool last = mark + 1 == view_.marks.size();
       const double next = last ? width() : strip_.x_of(view_.marks[mark + 1].time_s);
       if (x < free_from || x + 4.0 + long_px > std::min(next - 2.0, width())) continue;
-      text(x + 4.0, y - 7.0, mark_colour, name);
+      text(x + 4.0, y - 7.0, colours_.mark_colour, name);
       free_from = x + 4.0 + long_px;
     }
   }
@@ -169,14 +190,15 @@ private:
   void head() const {
     const double x = strip_.x_of(view_.head_s);
     if (x < DopeSheet::left - 1.0 || x > width()) return;
-    list_.AddRectFilled(at(x - 1.0, 0.0), at(x + 1.0, height()), head_colour);
-    list_.AddTriangleFilled(at(x - 6.0, 0.0), at(x + 6.0, 0.0), at(x, 9.0), head_colour);
+    list_.AddRectFilled(at(x - 1.0, 0.0), at(x + 1.0, height()), colours_.head_colour);
+    list_.AddTriangleFilled(at(x - 6.0, 0.0), at(x + 6.0, 0.0), at(x, 9.0), colours_.head_colour);
   }
 
   const DopeSheet& strip_;
   const TimelineView& view_;
   const StripLook& look_;
   ImDrawList& list_;
+  const StripColours& colours_ = is_dark() ? dark_strip : light_strip;
 };
 
 constexpr float controls_height = 36.0F;

@@ -116,6 +116,10 @@ void use_theme(Theme theme, float scale) {
   ImGui::GetIO().Fonts->Build(); // em() needs it before the first picture
 }
 
+bool is_dark() {
+  return palette().text == dark.text;
+}
+
 ImVec4 accent() {
   return colour(palette().accent);
 }

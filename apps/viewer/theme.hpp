@@ -19,6 +19,8 @@ inline float em(float count) {
   return count * ImGui::GetIO().Fonts->Fonts[0]->FontSize;
 }
 
+/// Returns whether the theme is dark.
+bool is_dark();
 /// Returns the colour that marks what is chosen.
 ImVec4 accent();
 /// Returns the colour of a warning.

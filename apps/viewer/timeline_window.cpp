@@ -12,6 +12,7 @@
 #include "viewer/command_widgets.hpp"
 #include "viewer/dope_sheet_widget.hpp"
 #include "viewer/pointing.hpp"
+#include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
@@ -78,11 +79,9 @@ struct TimelineWindow::Panel {
     if (retiming_shown) whole(view, actions);
     if (!view.message.empty()) {
       ImGui::Separator();
-      const ImVec4 colour =
-          view.refused ? ImVec4(1.0F, 0.6F, 0.45F, 1.0F) : ImVec4(0.7F, 0.9F, 0.75F, 1.0F);
-      ImGui::PushStyleColor(ImGuiCol_Text, colour);
+      if (view.refused) ImGui::PushStyleColor(ImGuiCol_Text, warning());
       ImGui::TextUnformatted(view.message.c_str());
-      ImGui::PopStyleColor();
+      if (view.refused) ImGui::PopStyleColor();
     }
     ImGui::PopTextWrapPos();
     ImGui::End();
