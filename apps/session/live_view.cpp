@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/model_files.hpp"
+#include "session/first_start.hpp"
 #include "viewer/live_window.hpp"
 #include "viewer/puppet_editor.hpp"
 
@@ -25,6 +26,8 @@ public:
     if (run.over)
       gauges_.model += " over " + std::filesystem::path(run.over->file).filename().string();
     gauges_.rate_hz = run.loop.rate_hz;
+    // Pictures of the window are the same for everyone.
+    if (options.screenshot.empty() && are_hints_due()) window_->show_hints();
     edits_ = !run.puppet_file.empty() && !run.puppet; // there is none yet
   }
 
@@ -51,7 +54,9 @@ public:
       window_->editor().set_model(status.model.mesh);
     }
     window_->editor().follow(status.puppet, status.frame);
+    const bool had_hints = window_->has_hints();
     const Commands given = window_->show(status.frame, status.fresh, gauges_);
+    if (had_hints && !window_->has_hints()) keep_hints_closed();
     if (auto puppet = window_->editor().take()) asks.emplace_back(std::move(puppet));
     asks.insert(asks.end(), given.begin(), given.end());
     if (status.fresh) ++shown_;

@@ -55,6 +55,10 @@ public:
   /// The editor of the puppet, after its own begin().
   PuppetEditor& editor() noexcept { return *editor_; }
 
+  /// Shows hints over the picture until the user closes them.
+  void show_hints() noexcept { hints_ = true; }
+  /// Returns whether hints are shown.
+  bool has_hints() const noexcept { return hints_; }
   /// Returns the message in the status bar: the report, or a command's refusal.
   const std::string& message() const noexcept;
   /// Returns the settings that the panel shows.
@@ -78,6 +82,7 @@ private:
   std::optional<render::SceneBuilder> builder_;
   bool shows_loop_ = true; ///< otherwise the editor's model
   bool plays_ = false;     ///< the loop has a puppet
+  bool hints_ = false;
   render::HoldTracker holds_;
   render::SceneFrame scene_frame_;
   HandMover hand_mover_;

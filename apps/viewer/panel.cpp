@@ -7,6 +7,7 @@
 
 #include "viewer/command_widgets.hpp"
 #include "viewer/controls.hpp"
+#include "viewer/hints.hpp"
 #include "viewer/status_bar.hpp"
 #include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
@@ -229,6 +230,7 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
   panel_->keys({frame, gauges.facts}, *window_, *editor_, commands);
   panel_->message = panel_->note.empty() ? gauges.report : panel_->note;
   draw_status_bar(frame, gauges, panel_->message);
+  if (hints_ && draw_hints(panel_->covered_px())) hints_ = false;
   if (const auto change = panel_->pending.ask()) commands.push_back(*change);
 }
 

@@ -314,6 +314,22 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     CHECK(names_in(flow::Mode::parts) == Names{"closed pinches", "smooth hands"});
   }
 
+  TEST_CASE("hints are beside the panel, and go for good with their button") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Person person;
+    CHECK(control_named("Do not show again") == nullptr);
+    person.window->show_hints();
+    for (int picture = 0; picture < 3; ++picture)
+      person.window->show(person.frame, false, person.gauges);
+    REQUIRE(control_named("Do not show again") != nullptr);
+    CHECK(static_cast<int>(control_named("Do not show again")->min.x()) > panel_right());
+    CHECK(person.press("Do not show again").empty());
+    CHECK_FALSE(person.window->has_hints());
+    person.window->show(person.frame, false, person.gauges);
+    CHECK(control_named("Do not show again") == nullptr);
+  }
+
   TEST_CASE("F3 finds a command by words of its name or its help") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
