@@ -37,7 +37,7 @@ void append_joint(Bytes& out, std::size_t sender, std::size_t sensor,
 void append_angles(Bytes& out, std::size_t sender, const nendo_publish_hand_state& state,
                    std::int64_t time_us) {
   Bytes payload;
-  payload.reserve(8 * (1 + NENDO_PUBLISH_ANGLES));
+  payload.reserve(std::size_t{8} * (1 + NENDO_PUBLISH_ANGLES));
   ByteWriter writer(payload);
   writer.f64_be(NENDO_PUBLISH_ANGLES);
   for (const double angle_rad : state.angles)

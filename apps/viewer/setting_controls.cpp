@@ -115,7 +115,7 @@ void draw_brushes(const flow::BrushesSetting& setting, bool& is_one, flow::LoopS
   draw_fingers(setting, is_one, setting.of(chosen),
                [](std::string_view label, deform::Brush& brush) {
                  std::array<std::string_view, deform::brush_count> names;
-                 for (std::uint8_t at = 0; at < names.size(); ++at)
+                 for (std::uint8_t at = 0; at < deform::brush_count; ++at)
                    names[at] = name_of(static_cast<deform::Brush>(at));
                  auto at = static_cast<std::size_t>(brush);
                  if (choice_field(label, names, at)) brush = static_cast<deform::Brush>(at);
