@@ -114,19 +114,25 @@ bool one_of(std::span<const std::string_view> names, std::size_t& chosen, std::s
   return changed;
 }
 
-bool number_field(std::string_view text, float& value, float min, float max, const char* format) {
-  label(text);
+bool bar_field(std::string_view name, float& value, float min, float max, const char* format,
+               float width) {
+  ImGui::SetNextItemWidth(width > 0.0F ? width : ImGui::GetContentRegionAvail().x);
   draw_share((value - min) / (max - min));
   const float before = value;
-  ImGui::PushID(text.data(), text.data() + text.size());
+  ImGui::PushID(name.data(), name.data() + name.size());
   ImGui::DragFloat("##number", &value, (max - min) / 200.0F, min, max, format,
                    ImGuiSliderFlags_AlwaysClamp);
   ImGui::PopID();
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsItemHovered() && io.KeyCtrl && io.MouseWheel != 0.0F)
     value = std::clamp(value + io.MouseWheel * (max - min) / 50.0F, min, max);
-  note_control(text, "");
+  note_control(name, "");
   return value != before;
+}
+
+bool number_field(std::string_view text, float& value, float min, float max, const char* format) {
+  label(text);
+  return bar_field(text, value, min, max, format, 0.0F);
 }
 
 bool choice_field(std::string_view text, std::span<const std::string_view> names,

@@ -24,9 +24,13 @@ bool section(std::string_view name, bool is_open_at_first);
 /// Buttons in lines of `in_line`, of which one is chosen.
 bool one_of(std::span<const std::string_view> names, std::size_t& chosen, std::size_t in_line);
 
+/// A number that is dragged, typed after a double click, or changed by the wheel with ctrl;
+/// `format` says what it is. Width 0: the rest of the line.
+bool bar_field(std::string_view name, float& value, float min, float max, const char* format,
+               float width);
+
 // Fields with a label at the left:
 
-/// A number that is dragged, typed after a double click, or changed by the wheel with ctrl.
 bool number_field(std::string_view label, float& value, float min, float max, const char* format);
 /// A list of names, of which one is chosen.
 bool choice_field(std::string_view label, std::span<const std::string_view> names,

@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include "viewer/command_widgets.hpp"
+#include "viewer/controls.hpp"
 #include "viewer/theme.hpp"
 
 namespace nendo::viewer {
@@ -70,14 +71,19 @@ public:
   }
 
 private:
+  /// The strip measures in pixels of a screen of scale 1.
   ImVec2 at(double x, double y) const {
-    return {look_.corner.x + static_cast<float>(x), look_.corner.y + static_cast<float>(y)};
+    return {look_.corner.x + scale_ * static_cast<float>(x),
+            look_.corner.y + scale_ * static_cast<float>(y)};
+  }
+  double length_of(const char* what) const {
+    return static_cast<double>(ImGui::CalcTextSize(what).x / scale_);
   }
   double x_of(double time_s) const { // a little beyond the strip where it is beyond
     return std::clamp(strip_.x_of(time_s), DopeSheet::left - 20.0, width() + 20.0);
   }
-  double width() const { return static_cast<double>(look_.size.x); }
-  double height() const { return static_cast<double>(look_.size.y); }
+  double width() const { return static_cast<double>(look_.size.x / scale_); }
+  double height() const { return static_cast<double>(look_.size.y / scale_); }
   void text(double x, double y, ImU32 colour, const char* what) const {
     list_.AddText(at(x, y), colour, what);
   }
@@ -125,7 +131,7 @@ private:
       char label[32];
       std::snprintf(label, sizeof label, "%.*f", decimals, time_s);
       const double x = strip_.x_of(time_s) + 3.0;
-      const auto long_px = static_cast<double>(ImGui::CalcTextSize(label).x);
+      const double long_px = length_of(label);
       text(std::min(x, width() - long_px - 2.0), 3.0, colours_.words, label);
     });
   }
@@ -178,7 +184,7 @@ private:
       if (x < DopeSheet::left || x > width()) continue;
       list_.AddRectFilled(at(x - 1.0, y - 10.0), at(x + 1.0, y + 10.0), colours_.mark_colour);
       const char* const name = view_.marks[mark].name.c_str();
-      const auto long_px = static_cast<double>(ImGui::CalcTextSize(name).x);
+      const double long_px = length_of(name);
       const bool last = mark + 1 == view_.marks.size();
       const double next = last ? width() : strip_.x_of(view_.marks[mark + 1].time_s);
       if (x < free_from || x + 4.0 + long_px > std::min(next - 2.0, width())) continue;
@@ -198,11 +204,12 @@ private:
   const TimelineView& view_;
   const StripLook& look_;
   ImDrawList& list_;
+  const float scale_ = scale();
   const StripColours& colours_ = is_dark() ? dark_strip : light_strip;
 };
 
-constexpr float controls_height = 36.0F;
-constexpr float margin = 6.0F;
+constexpr float controls_em = 2.4F;
+constexpr float margin_em = 0.4F;
 constexpr double drag_begins_px = 3.0;
 
 void show_tooltip_at(const TimelineView& view, const DopeSheet& strip, double x, double y) {
@@ -222,14 +229,15 @@ double on_a_frame(double time_s, const TimelineView& view) {
 } // namespace
 
 int DopeSheetWidget::height_for(std::size_t lanes) noexcept {
-  return static_cast<int>(DopeSheet::height_for(lanes) +
-                          static_cast<double>(controls_height + 2.0F * margin));
+  return static_cast<int>(scale() * static_cast<float>(DopeSheet::height_for(lanes)) +
+                          em(controls_em + 2.0F * margin_em));
 }
 
 void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retiming>& shaded,
                            EditActions& actions) {
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   const auto height = static_cast<float>(height_for(view.lanes.size()));
+  const float margin = em(margin_em), px = scale();
   ImGui::SetNextWindowPos(ImVec2(0.0F, all.y - height));
   ImGui::SetNextWindowSize(ImVec2(all.x, height));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(margin, margin));
@@ -238,17 +246,17 @@ void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retimin
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
   controls(view, actions);
-  const ImVec2 corner(margin, all.y - height + margin + controls_height);
+  const ImVec2 corner(margin, all.y - height + margin + em(controls_em));
   const ImVec2 size(std::max(64.0F, all.x - 2.0F * margin),
-                    static_cast<float>(DopeSheet::height_for(view.lanes.size())));
-  strip_.fit(static_cast<double>(size.x), view.duration_s);
+                    px * static_cast<float>(DopeSheet::height_for(view.lanes.size())));
+  strip_.fit(static_cast<double>(size.x / px), view.duration_s);
   if (std::exchange(head_s_, view.head_s) != view.head_s) strip_.follow(view.head_s);
   ImGui::SetCursorScreenPos(corner);
   ImGui::InvisibleButton("keys", size,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const auto x = static_cast<double>(mouse.x - corner.x);
-  const auto y = static_cast<double>(mouse.y - corner.y);
+  const auto x = static_cast<double>((mouse.x - corner.x) / px);
+  const auto y = static_cast<double>((mouse.y - corner.y) / px);
   follow_mouse(view, x, y, actions);
   StripLook look{corner, size, {}, shaded};
   if (ImGui::IsItemHovered()) {
@@ -261,16 +269,14 @@ void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retimin
 }
 
 void DopeSheetWidget::controls(const TimelineView& view, EditActions& actions) const {
-  constexpr float button_width = 34.0F;
-  edit_buttons(commands::Buttons::head, view.facts, button_width, actions.commands);
+  edit_buttons(commands::Buttons::head, view.facts, em(2.3F), actions.commands);
   ImGui::SameLine();
   bool loops = view.loops;
-  if (ImGui::Checkbox("loop", &loops)) actions.commands.push_back(EditCommand::loop);
+  if (check("loop", loops)) actions.commands.push_back(EditCommand::loop);
   show_help("loop");
   ImGui::SameLine();
   auto speed = static_cast<float>(view.speed);
-  ImGui::SetNextItemWidth(110.0F);
-  if (ImGui::SliderFloat("##speed", &speed, 0.1F, 4.0F, "speed %.2f", ImGuiSliderFlags_Logarithmic))
+  if (bar_field("speed", speed, 0.1F, 4.0F, "speed %.2f", em(7.4F)))
     actions.speed = static_cast<double>(speed);
   ImGui::SameLine();
   ImGui::Text("%.3f s of %.3f s", view.head_s, view.duration_s);
@@ -287,7 +293,7 @@ void DopeSheetWidget::follow_mouse(const TimelineView& view, double x, double y,
   if (ImGui::IsItemHovered() && io.MouseWheel != 0.0F)
     strip_.zoom(x, static_cast<double>(io.MouseWheel));
   if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Middle))
-    strip_.pan(static_cast<double>(io.MouseDelta.x));
+    strip_.pan(static_cast<double>(io.MouseDelta.x / scale()));
   if (ImGui::IsItemActivated() && ImGui::IsMouseClicked(ImGuiMouseButton_Left))
     press(view, x, y, actions);
   if (taken_ && is_struck(commands::row_of(EditCommand::select_none))) {

@@ -35,6 +35,11 @@ Palette& palette() {
   return now;
 }
 
+float& scale_in_use() {
+  static float now = 1.0F;
+  return now;
+}
+
 void use_sizes(ImGuiStyle& style) {
   style.WindowRounding = 8.0F;
   style.PopupRounding = 6.0F;
@@ -102,6 +107,7 @@ void use_font(float scale) {
 
 void use_theme(Theme theme, float scale) {
   palette() = theme == Theme::dark ? dark : light;
+  scale_in_use() = scale;
   ImGuiStyle style;
   if (theme == Theme::dark) {
     ImGui::StyleColorsDark(&style);
@@ -114,6 +120,10 @@ void use_theme(Theme theme, float scale) {
   ImGui::GetStyle() = style;
   use_font(scale);
   ImGui::GetIO().Fonts->Build(); // em() needs it before the first picture
+}
+
+float scale() {
+  return scale_in_use();
 }
 
 bool is_dark() {

@@ -19,6 +19,8 @@ inline float em(float count) {
   return count * ImGui::GetIO().Fonts->Fonts[0]->FontSize;
 }
 
+/// Returns the scale of the screen that the theme has.
+float scale();
 /// Returns whether the theme is dark.
 bool is_dark();
 /// Returns the colour that marks what is chosen.

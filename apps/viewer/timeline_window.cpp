@@ -10,6 +10,7 @@
 
 #include "commands/commands.hpp"
 #include "viewer/command_widgets.hpp"
+#include "viewer/controls.hpp"
 #include "viewer/dope_sheet_widget.hpp"
 #include "viewer/pointing.hpp"
 #include "viewer/theme.hpp"
@@ -28,7 +29,7 @@ constexpr const char* mouse_words =
 
 void seconds(const char* label, double& value_s, double head_s) {
   ImGui::PushID(label);
-  ImGui::SetNextItemWidth(110.0F);
+  ImGui::SetNextItemWidth(em(7.4F));
   ImGui::InputDouble(label, &value_s, 0.0, 0.0, "%.3f s");
   ImGui::SameLine();
   if (ImGui::SmallButton("= head")) value_s = head_s;
@@ -51,8 +52,8 @@ const render::SceneHand* bendable_hand(const TimelineView& view,
 } // namespace
 
 struct TimelineWindow::Panel {
-  static constexpr int gap_px = 10;
-  static constexpr int width_px = 300;
+  static constexpr float gap_em = 0.7F;
+  static constexpr float width_em = 20.0F;
 
   DopeSheetWidget strip;
   TipMover tips;
@@ -63,19 +64,16 @@ struct TimelineWindow::Panel {
   bool blends = false; ///< the mouse holds the slider
 
   void draw(const TimelineView& view, EditActions& actions) {
-    constexpr float gap = gap_px;
-    constexpr float panel_width = width_px;
+    const float gap = em(gap_em), panel_width = em(width_em);
     ImGui::SetNextWindowPos(ImVec2(gap, gap));
     ImGui::SetNextWindowSizeConstraints(ImVec2(panel_width, 0.0F), ImVec2(panel_width, 4096.0F));
     ImGui::Begin("Nendo: edit", nullptr,
                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
-    ImGui::PushTextWrapPos(panel_width - 12.0F);
+    ImGui::PushTextWrapPos(panel_width - em(0.8F));
     file(view, actions);
-    if (ImGui::CollapsingHeader("Key", ImGuiTreeNodeFlags_DefaultOpen)) key(view, actions);
-    if (!view.functions.empty() &&
-        ImGui::CollapsingHeader("Functions", ImGuiTreeNodeFlags_DefaultOpen))
-      functions(view);
-    retiming_shown = ImGui::CollapsingHeader("Timeline");
+    if (section("Key", true)) key(view, actions);
+    if (!view.functions.empty() && section("Functions", true)) functions(view);
+    retiming_shown = section("Timeline", false);
     if (retiming_shown) whole(view, actions);
     if (!view.message.empty()) {
       ImGui::Separator();
@@ -143,8 +141,7 @@ private:
     }
     edit_buttons(commands::Buttons::key, view.facts, 0.0F, actions.commands);
     ImGui::BeginDisabled(!any);
-    ImGui::SetNextItemWidth(170.0F);
-    if (ImGui::SliderFloat("blend", &blend, 0.0F, 1.0F, "%.2f")) {
+    if (number_field("blend", blend, 0.0F, 1.0F, "%.2f")) {
       blends = true;
       actions.tried = KeyBlend{static_cast<double>(std::clamp(blend, 0.0F, 1.0F))};
     }
@@ -164,12 +161,11 @@ private:
 
   /// A bar for each, from 0; those below 0 differ by their numbers.
   static void functions(const TimelineView& view) {
-    constexpr float bar_width = 90.0F;
     for (const FunctionValue& function : view.functions) {
       char number[32];
       std::snprintf(number, sizeof number, "%.2f", function.value);
       const auto part = static_cast<float>(std::clamp(std::abs(function.value), 0.0, 1.0));
-      ImGui::ProgressBar(part, ImVec2(bar_width, 0.0F), number);
+      ImGui::ProgressBar(part, ImVec2(em(6.0F), 0.0F), number);
       ImGui::SameLine();
       ImGui::TextUnformatted(function.name.c_str());
     }
@@ -180,7 +176,7 @@ private:
     if (retiming.to_s <= retiming.from_s) retiming.to_s = view.duration_s;
     seconds("from", retiming.from_s, view.head_s);
     seconds("to", retiming.to_s, view.head_s);
-    ImGui::SetNextItemWidth(110.0F);
+    ImGui::SetNextItemWidth(em(7.4F));
     ImGui::InputDouble("times as long", &retiming.scale, 0.0, 0.0, "%.3f");
     if (ImGui::Button("Retime")) actions.retiming = retiming;
   }
@@ -201,7 +197,7 @@ TimelineWindow::open(const std::string& title, const WindowLook& look, const std
 EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFrame& scene_frame) {
   EditActions actions;
   window_->leave_below(DopeSheetWidget::height_for(view.lanes.size()));
-  window_->leave_left(Panel::gap_px + Panel::width_px);
+  window_->leave_left(static_cast<int>(em(Panel::gap_em + Panel::width_em)));
   window_->begin_picture(scene_frame);
   if (!move_tip(view, scene_frame, actions)) window_->move_camera();
   mark_tips(view, scene_frame);

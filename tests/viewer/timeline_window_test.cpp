@@ -9,6 +9,7 @@
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
 #include "viewer/command_widgets.hpp"
+#include "viewer/control_list.hpp"
 #include "viewer/timeline_window.hpp"
 
 namespace timeline_window_test {
@@ -32,9 +33,11 @@ struct Seat {
   SceneFrame scene_frame;
   SimulatedInput input;
   DopeSheet strip;
+  double scale;
 
-  Seat() {
-    auto opened = TimelineWindow::open("test", {size, Theme::dark, 1.0F}, "nothing else");
+  explicit Seat(const WindowLook& look = {size, Theme::dark, 1.0F})
+      : scale(static_cast<double>(*look.scale)) {
+    auto opened = TimelineWindow::open("test", look, "nothing else");
     REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
     window = *std::move(opened);
     window->scene_window().set_model(test.loop->changes().layout(),
@@ -47,13 +50,14 @@ struct Seat {
     view.rate_hz = rate_hz;
     view.lanes = {{Side::left, {0.0, 1.0, 4.0}}, {Side::right, {0.5, 2.0, 2.5, 3.5}}};
     view.marks = {{0.8, "commit"}};
-    strip.fit(size.width - 12.0, view.duration_s);
+    strip.fit(look.size.width / scale - 12.0, view.duration_s);
     show();
   }
   EditActions show() { return window->show(view, scene_frame); }
-  /// The strip is 6 pixels from the window's edges, below 36 of controls.
+  /// The strip is 6 pixels from the window's edges, below 36 of controls, on a screen of scale 1.
   Vector2d on_strip(double time_s, double y) const {
-    return {6.0 + strip.x_of(time_s), window->scene_window().scene_size().height + 6.0 + 36.0 + y};
+    return {scale * (6.0 + strip.x_of(time_s)),
+            window->scene_window().scene_size().height + scale * (6.0 + 36.0 + y)};
   }
   Vector2d on_key(std::size_t lane, std::size_t key) const {
     return on_strip(view.lanes[lane].keys_s[key], DopeSheet::middle_of(lane));
@@ -119,6 +123,32 @@ const KeyDrag& key_drag(const EditActions& actions) {
 } // namespace
 
 TEST_SUITE("timeline_window") {
+  TEST_CASE("on a dense screen all is larger, keys are where they are seen, and nothing overlaps") {
+    if (!test::restraint_is_counted) return;
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    for (const WindowLook& look :
+         {WindowLook{{1280, 720}, Theme::light, 1.0F}, WindowLook{{1920, 1080}, Theme::dark, 1.5F},
+          WindowLook{{3840, 2160}, Theme::light, 2.0F}}) {
+      Seat seat(look);
+      const auto pressed = seat.press(seat.on_key(1, 2));
+      REQUIRE(pressed.select);
+      CHECK(*pressed.select == StripKey{1, 2});
+      seat.release();
+      const auto shown = controls();
+      CHECK(shown.size() > 12);
+      for (std::size_t at = 0; at < shown.size(); ++at) {
+        CAPTURE(shown[at].name);
+        CHECK_FALSE(shown[at].is_cut);
+        for (std::size_t other = 0; other < at; ++other) {
+          const Eigen::Vector2f overlap =
+              shown[at].max.cwiseMin(shown[other].max) - shown[at].min.cwiseMax(shown[other].min);
+          CHECK_MESSAGE(overlap.minCoeff() <= 0.0F, shown[other].name);
+        }
+      }
+    }
+  }
+
   TEST_CASE("a click selects a key, and a drag moves it to whole frames, or copies it") {
     const Desk desk;
     if (!desk.seat) return;
