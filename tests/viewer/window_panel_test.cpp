@@ -21,7 +21,7 @@ using flow::Request;
 
 namespace {
 
-constexpr Size size{1000, 760};
+constexpr Size size{800, 760};
 
 /// Where the panel ends, in pixels from the window's left.
 int panel_right() {

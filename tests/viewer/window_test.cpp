@@ -175,7 +175,7 @@ TEST_SUITE("window") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
     test::LoopUnderTest test(flow::Mode::type1);
-    constexpr Size size{1000, 700};
+    constexpr Size size{800, 600};
     auto opened = LiveWindow::open("test", {size, Theme::light, 1.0F});
     REQUIRE(opened);
     LiveWindow& window = **opened;
