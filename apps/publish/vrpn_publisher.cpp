@@ -2,7 +2,7 @@
 
 namespace nendo::publish {
 
-Result<void> VrpnPublisher::begin() {
+Result<void> VrpnPublisher::begin(const LoopOutline& /*outline*/) {
   end();
   if (!server_) {
     auto opened = vrpn::Server::open(endpoint_);

@@ -24,8 +24,9 @@ public:
       : name_(std::move(name)), endpoint_(target.endpoint), sender_(target.rate_hz) {}
 
   /// Begins to send. To be called before each loop's first tick, while no loop runs. The first call
-  /// opens the port, and clients stay from loop to loop. Errors: those of open_at().
-  Result<void> begin();
+  /// opens the port, and clients stay from loop to loop. Hands need nothing of the outline. Errors:
+  /// those of open_at().
+  Result<void> begin(const LoopOutline& outline);
   /// Wait-free: no allocation, lock or system call.
   void show(const flow::Frame& frame) noexcept override { sender_.show(frame); }
   /// Sends the remaining records. To be called while no loop runs.

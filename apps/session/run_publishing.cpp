@@ -80,9 +80,12 @@ private:
   publish::SegmentCounts done_; ///< the counts of all segments
 };
 
-class OscSink final : public PublishingSink {
+// A publisher of hands over a network, which has nothing to do with the model's versions.
+template <class Publisher>
+class NetworkSink final : public PublishingSink {
 public:
-  OscSink(std::string text, const publish::OscTarget& target)
+  template <class Target>
+  NetworkSink(std::string text, const Target& target)
       : text_(std::move(text)), publisher_(text_, target) {}
 
   Result<void> begin(const LoopStart& start) override {
@@ -97,25 +100,7 @@ public:
 
 private:
   std::string text_;
-  publish::OscPublisher publisher_;
-};
-
-class VrpnSink final : public PublishingSink {
-public:
-  VrpnSink(std::string text, const publish::VrpnTarget& target)
-      : text_(std::move(text)), publisher_(text_, target) {}
-
-  Result<void> begin(const LoopStart&) override { return publisher_.begin(); }
-  Result<void> prepare(const flow::ModelVersion&) override { return {}; } // it has no vertices
-  void show(const flow::Frame& frame) noexcept override { publisher_.show(frame); }
-  PublishedTo end() override {
-    publisher_.end();
-    return {text_, publisher_.counts()};
-  }
-
-private:
-  std::string text_;
-  publish::VrpnPublisher publisher_;
+  Publisher publisher_;
 };
 
 } // namespace
@@ -149,9 +134,9 @@ publish_to(const std::vector<std::string>& targets) {
     if (const auto* segment = std::get_if<publish::SegmentTarget>(&*target)) {
       sinks.push_back(std::make_unique<SegmentSink>(text, *segment));
     } else if (const auto* osc = std::get_if<publish::OscTarget>(&*target)) {
-      sinks.push_back(std::make_unique<OscSink>(text, *osc));
+      sinks.push_back(std::make_unique<NetworkSink<publish::OscPublisher>>(text, *osc));
     } else if (const auto* vrpn = std::get_if<publish::VrpnTarget>(&*target)) {
-      sinks.push_back(std::make_unique<VrpnSink>(text, *vrpn));
+      sinks.push_back(std::make_unique<NetworkSink<publish::VrpnPublisher>>(text, *vrpn));
     }
   }
   return sinks;

@@ -56,7 +56,7 @@ TEST_SUITE("publishing_tick") {
       test::attach(test, {&publisher, &sender, &server});
       REQUIRE(publisher.begin(test::outline_of(test)));
       REQUIRE(sender.begin(test::outline_of(test)));
-      REQUIRE(server.begin());
+      REQUIRE(server.begin(test::outline_of(test)));
       const test::MappedSegment segment(test::segment_name("tick"));
       std::atomic<bool> over{false};
       std::uint64_t read = 0;
