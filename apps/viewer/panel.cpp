@@ -112,7 +112,7 @@ int LiveWindow::Panel::covered_px() const {
 }
 
 void LiveWindow::Panel::follow_settings(const flow::LoopSettings& current) {
-  if (pending.follow(current)) settings.follow(current);
+  if (pending.follow(current)) settings.follow(pending);
 }
 
 void LiveWindow::Panel::history(const flow::Frame& frame, Commands& commands) {

@@ -8,14 +8,13 @@
 #include <vector>
 
 #include <nendo/flow/setting.hpp>
+#include <nendo/hand/joints.hpp>
 
 #include "viewer/command_widgets.hpp"
 #include "viewer/controls.hpp"
 
 namespace nendo::viewer {
 namespace {
-
-constexpr std::array<std::string_view, 5> fingers{"thumb", "index", "middle", "ring", "little"};
 
 /// The row of the command table that changes a setting by a key; "": none does.
 std::string_view row_of(std::string_view setting) {
@@ -92,9 +91,9 @@ void draw(const flow::ChoiceSetting<T>& setting, flow::LoopSettings& chosen) {
 template <class Values, class DrawOne>
 void draw_fingers(const flow::SettingText& setting, bool& is_one, Values& values,
                   const DrawOne& draw_one) {
-  for (std::size_t finger = 0; finger < (is_one ? 1 : fingers.size()); ++finger) {
+  for (std::size_t finger = 0; finger < (is_one ? 1 : hand::finger_count); ++finger) {
     ImGui::PushID(setting.name.data());
-    draw_one(is_one ? setting.label : fingers[finger], values[finger]);
+    draw_one(is_one ? setting.label : name_of(static_cast<hand::Finger>(finger)), values[finger]);
     ImGui::PopID();
     show_setting_help(setting);
   }
@@ -124,13 +123,9 @@ void draw_brushes(const flow::BrushesSetting& setting, bool& is_one, flow::LoopS
 
 } // namespace
 
-void SettingControls::follow(const flow::LoopSettings& settings) noexcept {
-  const auto differ = [](const auto& values) {
-    return std::any_of(values.begin(), values.end(),
-                       [&](const auto& value) { return value != values[0]; });
-  };
-  if (differ(settings.radius_m)) one_radius_ = false;
-  if (differ(settings.brushes)) one_brush_ = false;
+void SettingControls::follow(const flow::PendingSettings& pending) noexcept {
+  one_radius_ = one_radius_ && pending.has_one_radius();
+  one_brush_ = one_brush_ && pending.has_one_brush();
 }
 
 void SettingControls::draw_modes(flow::LoopSettings& chosen) {

@@ -1,6 +1,7 @@
 #pragma once
 // A control for each setting of a loop that works in its mode, from the settings' descriptions.
 
+#include <nendo/flow/command.hpp>
 #include <nendo/flow/loop_settings.hpp>
 
 namespace nendo::viewer {
@@ -8,7 +9,7 @@ namespace nendo::viewer {
 class SettingControls {
 public:
   /// Shows radii and brushes of single fingers if these differ.
-  void follow(const flow::LoopSettings& settings) noexcept;
+  void follow(const flow::PendingSettings& pending) noexcept;
   /// Draws the mode's choice.
   static void draw_modes(flow::LoopSettings& chosen);
   /// Draws the controls of the other settings that work in that mode.
