@@ -1,7 +1,5 @@
 #include "publish/target.hpp"
 
-#include <cstring>
-
 #include <nendo/base/shared_name.hpp>
 #include <nendo/base/text.hpp>
 #include <nendo/driver/vrpn_protocol.hpp>
@@ -98,10 +96,7 @@ bool is_same_place(const Target& one, const Target& other) noexcept {
   if (one.index() != other.index()) return false;
   if (const auto* segment = std::get_if<SegmentTarget>(&one))
     return segment->name == std::get_if<SegmentTarget>(&other)->name;
-  const SocketAddress here = network_endpoint(one).socket_address();
-  const SocketAddress there = network_endpoint(other).socket_address();
-  return here.length == there.length &&
-         std::memcmp(&here.address, &there.address, here.length) == 0;
+  return network_endpoint(one).socket_address() == network_endpoint(other).socket_address();
 }
 
 } // namespace nendo::publish

@@ -12,14 +12,8 @@ namespace {
 
 namespace protocol = driver::vrpn;
 
-bool is_number(std::int32_t number) noexcept {
-  return number >= 0 && static_cast<std::size_t>(number) < protocol::max_numbers;
-}
-
-std::string_view text_of(std::span<const std::byte> bytes) noexcept {
-  const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return all.substr(0, all.find('\0'));
-}
+using protocol::is_number;
+using protocol::text_of;
 
 } // namespace
 

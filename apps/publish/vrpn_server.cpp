@@ -2,18 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
-#include <optional>
 #include <string_view>
 #include <utility>
 
-#include <netinet/tcp.h>
 #include <sys/socket.h>
 
 #include <nendo/base/number_in.hpp>
 #include <nendo/base/utc.hpp>
+#include <nendo/driver/vrpn_protocol.hpp>
 
 namespace nendo::publish::vrpn {
 namespace {
@@ -21,10 +18,6 @@ namespace {
 /// Small, because its contents can no longer be replaced by newer hands: some 20 ticks.
 constexpr std::size_t send_buffer_bytes = std::size_t{64} << 10;
 constexpr std::size_t max_datagram_bytes = 128;
-
-bool is_same(const SocketAddress& one, const SocketAddress& other) noexcept {
-  return one.length == other.length && std::memcmp(&one.address, &other.address, one.length) == 0;
-}
 
 void set_port(SocketAddress& address, std::uint16_t port) noexcept {
   if (address.address.any.sa_family == AF_INET6) {
@@ -34,25 +27,11 @@ void set_port(SocketAddress& address, std::uint16_t port) noexcept {
   }
 }
 
-/// Returns a socket that is connected, or will be; nothing if there is no way there.
-std::optional<UniqueFd> begin_to_connect(const SocketAddress& to) {
-  UniqueFd socket(
-      ::socket(to.address.any.sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  if (!socket.is_open()) return std::nullopt;
-  const int yes = 1, bytes = send_buffer_bytes;
-  ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
-  if (::connect(socket.get(), &to.address.any, to.length) != 0 && errno != EINPROGRESS)
-    return std::nullopt;
-  return socket;
-}
-
 } // namespace
 
 std::uint16_t asked_port(std::span<const std::byte> datagram) noexcept {
   constexpr std::uint16_t first_free_port = 1024; // those below are of services
-  std::string_view text(reinterpret_cast<const char*>(datagram.data()), datagram.size());
-  text = text.substr(0, text.find('\0'));
+  const std::string_view text = driver::vrpn::text_of(datagram);
   const std::size_t blank = text.find(' ');
   if (blank == std::string_view::npos) return 0;
   const auto port = number_in<std::uint16_t>(text.substr(blank + 1));
@@ -116,7 +95,7 @@ void Server::connect_to_asking(HostTime now) {
     ++counts_.refused;
     return;
   }
-  auto socket = begin_to_connect(from);
+  auto socket = begin_to_connect(from, send_buffer_bytes);
   if (!socket) return;
   ++counts_.clients;
   clients_.emplace_back(*std::move(socket), now, from);
@@ -124,7 +103,7 @@ void Server::connect_to_asking(HostTime now) {
 
 bool Server::is_client(const SocketAddress& address) const {
   return std::any_of(clients_.begin(), clients_.end(),
-                     [&](const Client& client) { return is_same(client.asked_for(), address); });
+                     [&](const Client& client) { return client.asked_for() == address; });
 }
 
 void Server::send(const HandsRecord& record) {

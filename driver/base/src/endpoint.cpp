@@ -58,6 +58,13 @@ bool read_address(const Endpoint& endpoint, SocketAddress& to) {
   return endpoint.is_ipv6() ? read_ipv6(endpoint, to) : read_ipv4(endpoint, to);
 }
 
+void set_up_stream(const UniqueFd& socket, std::size_t send_buffer_bytes) {
+  const int yes = 1;
+  ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  const int bytes = static_cast<int>(send_buffer_bytes);
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
+}
+
 } // namespace
 
 std::string Endpoint::authority() const {
@@ -116,13 +123,24 @@ Result<UniqueFd> open_at(Endpoint& endpoint, int type) {
   return socket;
 }
 
+bool operator==(const SocketAddress& one, const SocketAddress& other) noexcept {
+  return one.length == other.length && std::memcmp(&one.address, &other.address, one.length) == 0;
+}
+
 std::optional<UniqueFd> accept_from(const UniqueFd& listener, std::size_t send_buffer_bytes) {
   UniqueFd socket(::accept4(listener.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (!socket.is_open()) return std::nullopt;
-  const int yes = 1;
-  ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  const int bytes = static_cast<int>(send_buffer_bytes);
-  ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
+  set_up_stream(socket, send_buffer_bytes);
+  return socket;
+}
+
+std::optional<UniqueFd> begin_to_connect(const SocketAddress& to, std::size_t send_buffer_bytes) {
+  UniqueFd socket(
+      ::socket(to.address.any.sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!socket.is_open()) return std::nullopt;
+  set_up_stream(socket, send_buffer_bytes);
+  if (::connect(socket.get(), &to.address.any, to.length) != 0 && errno != EINPROGRESS)
+    return std::nullopt;
   return socket;
 }
 

@@ -6,18 +6,6 @@
 #include <nendo/base/byte_reader.hpp>
 
 namespace nendo::driver::vrpn {
-namespace {
-
-std::string_view text_of(std::span<const std::byte> bytes) noexcept {
-  const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return all.substr(0, all.find('\0'));
-}
-
-bool is_number(std::int32_t number) noexcept {
-  return number >= 0 && static_cast<std::size_t>(number) < max_numbers;
-}
-
-} // namespace
 
 Parser::Parser(std::string tracker, std::vector<std::uint16_t> sensors)
     : tracker_(std::move(tracker)), sensors_(std::move(sensors)) {}

@@ -78,6 +78,17 @@ constexpr std::size_t padded(std::size_t payload_bytes) noexcept {
   return (payload_bytes + alignment - 1) / alignment * alignment;
 }
 
+/// Returns true for a number that a sender or a type can have.
+constexpr bool is_number(std::int32_t number) noexcept {
+  return number >= 0 && static_cast<std::size_t>(number) < max_numbers;
+}
+
+/// Returns the text up to its NUL, or all without one. It lives as long as the bytes.
+inline std::string_view text_of(std::span<const std::byte> bytes) noexcept {
+  const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return all.substr(0, all.find('\0'));
+}
+
 /// Returns the bytes with which each end begins: the cookie.
 NENDO_API std::vector<std::byte> greeting();
 /// Appends a message of sequence number 0, which no receiver uses [C]. time_us: since 1970 in UTC,

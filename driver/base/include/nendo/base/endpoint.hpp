@@ -27,6 +27,8 @@ struct SocketAddress {
   } address{};
   socklen_t length = 0;
 };
+/// Returns true for the same family, address and port.
+NENDO_API bool operator==(const SocketAddress& one, const SocketAddress& other) noexcept;
 
 struct NENDO_API Endpoint {
   std::string address =
@@ -63,5 +65,10 @@ NENDO_API Result<UniqueFd> open_at(Endpoint& endpoint, int type);
 /// none is waiting. send_buffer_bytes: the size of its send buffer.
 NENDO_API std::optional<UniqueFd> accept_from(const UniqueFd& listener,
                                               std::size_t send_buffer_bytes);
+
+/// Returns such a socket that is connected to the address, or will be; nothing if there is no way
+/// there.
+NENDO_API std::optional<UniqueFd> begin_to_connect(const SocketAddress& to,
+                                                   std::size_t send_buffer_bytes);
 
 } // namespace nendo
