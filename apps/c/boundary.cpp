@@ -1,7 +1,5 @@
 #include "c/boundary.hpp"
 
-#include <algorithm>
-
 #include <nendo/version.hpp>
 
 namespace nendo::c {

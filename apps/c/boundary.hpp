@@ -2,7 +2,6 @@
 // What all functions of the C interface do at its boundary: errors become a status and a message of
 // the thread, and no exception leaves.
 
-#include <array>
 #include <exception>
 #include <memory>
 #include <string>

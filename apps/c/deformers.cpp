@@ -1,5 +1,6 @@
 // Deforming vertices.
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>

@@ -1,6 +1,5 @@
 // Gloves and their hands.
 
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,6 +8,7 @@
 
 #include <nendo/driver/devices.hpp>
 #include <nendo/driver/open_glove.hpp>
+#include <nendo/flow/deform_loop.hpp>
 #include <nendo/flow/hand_input.hpp>
 #include <nendo/recording/replay_driver.hpp>
 #include <nendo/sculpting/open_hand.hpp>
@@ -21,25 +21,15 @@ namespace {
 /// An open glove, whose samples pass the gate and the filter of a loop.
 struct OpenGlove {
   explicit OpenGlove(sculpting::OpenHand opened)
-      : open(std::move(opened)), hand(input_of(open), flow::Placement{}, false) {}
+      : open(std::move(opened)), hand(sculpting::input_of(open), flow::Placement{}, false) {}
   ~OpenGlove() { open.glove->stop(); }
   OpenGlove(const OpenGlove&) = delete;
   OpenGlove& operator=(const OpenGlove&) = delete;
-
-  static flow::HandInput input_of(const sculpting::OpenHand& from) {
-    flow::HandInput input;
-    input.side = from.side;
-    input.wearer = from.wearer;
-    input.first = from.first;
-    return input;
-  }
 
   sculpting::OpenHand open;
   flow::GloveHand hand;
   std::uint64_t samples = 1; ///< with the first one, which wait_for_samples() took
 };
-
-constexpr std::chrono::milliseconds silent_after(500);
 
 Result<std::unique_ptr<OpenGlove>> open_glove(const char* name, const char* user) {
   driver::GloveContext context;
@@ -103,11 +93,11 @@ int nendo_glove_hand(nendo_glove* glove, struct nendo_hand* hand) {
     ++own.samples;
   });
   const GloveSample& latest = own.hand.latest;
-  const bool is_silent = HostClock::now() - latest.arrival > c::silent_after;
+  const bool is_silent = HostClock::now() - latest.arrival > flow::LoopOptions{}.silent_after;
   hand->flags = NENDO_PRESENT | (is_silent ? std::uint32_t{NENDO_SILENT} : 0U);
   hand->side = latest.side == Side::left ? NENDO_LEFT : NENDO_RIGHT;
   hand->samples = own.samples;
-  hand->time_s = std::chrono::duration<double>(latest.time().time_since_epoch()).count();
+  hand->time_s = to_seconds(latest.time().time_since_epoch());
   c::write_pose(own.hand.angles,
                 own.hand.skeleton().pose(own.hand.angles, Eigen::Isometry3d::Identity()), *hand);
   return NENDO_OK;

@@ -39,7 +39,9 @@ public:
     const auto samples = device.take(std::numeric_limits<double>::infinity());
     if (samples.empty()) throw py::stop_iteration();
     for (const GloveSample& sample : samples) {
-      if (!hand_) hand_.emplace(input_of(sample), flow::Placement{}, false);
+      if (!hand_)
+        hand_.emplace(flow::HandInput{.side = info.side, .wearer = wearer, .first = sample},
+                      flow::Placement{}, false);
       hand_->update(sample);
     }
     Hand hand{seconds_of(samples.back().time()), samples.back().sequence, samples.back().side};
@@ -55,14 +57,6 @@ public:
   Device<driver::Glove, GloveSample> device;
 
 private:
-  flow::HandInput input_of(const GloveSample& first) const {
-    flow::HandInput input;
-    input.side = info.side;
-    input.wearer = wearer;
-    input.first = first;
-    return input;
-  }
-
   std::optional<flow::GloveHand> hand_; ///< from the first sample on
 };
 

@@ -19,7 +19,7 @@ std::vector<flow::HandInput> inputs_of(const std::vector<gloves::OpenHand>& hand
   std::vector<flow::HandInput> inputs;
   inputs.reserve(hands.size());
   for (const auto& hand : hands) {
-    inputs.push_back({hand.ring.get(), hand.side, hand.wearer, hand.first});
+    inputs.push_back(sculpting::input_of(hand));
     inputs.back().filter = options.filter;
     if (!options.over) { // a take's wrists are its own
       inputs.back().wrist_path = hand.wrist_path;

@@ -61,7 +61,7 @@ struct LiveLoop::Parts {
   Result<void> place_loop() {
     std::vector<flow::HandInput> inputs;
     for (const OpenHand& hand : hands) {
-      inputs.push_back({hand.ring.get(), hand.side, hand.wearer, hand.first});
+      inputs.push_back(input_of(hand));
       inputs.back().filter = options.filter;
     }
     const double size_m = options.model_size_m.value_or(usual_size_m(options.mode));

@@ -56,6 +56,10 @@ void note_silent(const std::vector<std::string>& why, std::size_t opened, const 
 
 } // namespace
 
+flow::HandInput input_of(const OpenHand& hand) {
+  return {.ring = hand.ring.get(), .side = hand.side, .wearer = hand.wearer, .first = hand.first};
+}
+
 OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
                  EventCount* event_count, const Note& note) {
   const Side own_side = glove->info().side;

@@ -37,6 +37,8 @@ struct OpenHand {
   std::optional<OpenWrist> wrist{};                    ///< nothing: no tracker moves it
 };
 
+/// Returns the input of a loop, without a filter and a wrist. `hand` must outlive the loop.
+NENDO_API flow::HandInput input_of(const OpenHand& hand);
 /// Makes a hand from an open glove. The default `side` is the glove's own; a different side is
 /// noted. Each sample notifies `event_count`, which may be null and must outlive the hand.
 NENDO_API OpenHand hand_of(std::unique_ptr<driver::Glove> glove, std::optional<Side> side,
