@@ -9,13 +9,6 @@ std::string fixed(double number, int decimals) {
   return fmt::format("{:.{}f}", number, decimals);
 }
 
-std::string thousands(long long whole) {
-  std::string digits = std::to_string(whole);
-  for (std::size_t at = digits.size(); at > 3;)
-    digits.insert(at -= 3, ",");
-  return digits;
-}
-
 std::string count_text(std::size_t count, std::string_view word) {
   return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
 }

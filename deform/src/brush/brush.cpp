@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include <nendo/base/figures.hpp>
 #include <nendo/base/text.hpp>
 
 namespace nendo::deform {
@@ -23,10 +24,7 @@ std::optional<Brush> brush_named(std::string_view name) noexcept {
 }
 
 std::string brush_words() {
-  std::string words(brush_names.front());
-  for (std::size_t at = 1; at < brush_names.size(); ++at)
-    words.append(at + 1 < brush_names.size() ? ", " : " or ").append(brush_names[at]);
-  return words;
+  return alternatives(brush_names);
 }
 
 bool are_all_pull(std::span<const Brush> brushes) noexcept {
