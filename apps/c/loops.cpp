@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -11,10 +10,10 @@
 #include <nendo/deform/mesh_file.hpp>
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/triangles.hpp>
+#include <nendo/flow/setting.hpp>
 #include <nendo/sculpting/live_loop.hpp>
 
 #include "c/boundary.hpp"
-#include "c/setting_text.hpp"
 
 namespace nendo::c {
 namespace {
@@ -40,7 +39,7 @@ Result<sculpting::LiveOptions> options_of(const nendo_loop_options* given) {
   options.calibration.user = text_of(given->user);
   if (given->mode != nullptr) {
     const auto mode = flow::mode_named(given->mode);
-    if (!mode) return Error{Errc::usage, "mode: use " + std::string(flow::mode_names)};
+    if (!mode) return Error{Errc::usage, "mode: use " + flow::setting::mode.choices()};
     options.mode = *mode;
   }
   if (given->rate_hz != 0.0) options.pace.rate_hz = given->rate_hz;
@@ -72,18 +71,16 @@ Result<deform::Mesh> mesh_of(const double* vertices, std::size_t vertex_count,
   return mesh;
 }
 
-int begin(Result<deform::Mesh> mesh, const nendo_loop_options* given, nendo_loop** begun) {
-  return guarded([&]() -> Result<void> {
-    if (begun == nullptr) return is_null("begun");
-    if (!mesh) return mesh.error();
-    const auto options = options_of(given);
-    if (!options) return options.error();
-    deform::count_from(deform::usual_offset(*mesh), *mesh);
-    auto live = sculpting::LiveLoop::begin(*std::move(mesh), *options);
-    if (!live) return live.error();
-    *begun = object_of<nendo_loop>(std::make_unique<Loop>(*std::move(live)));
-    return {};
-  });
+/// Begins a loop by `begin_live`, which gets the options.
+template <class Begin>
+Result<void> begin(const nendo_loop_options* given, nendo_loop** begun, Begin begin_live) {
+  if (begun == nullptr) return is_null("begun");
+  const auto options = options_of(given);
+  if (!options) return options.error();
+  Result<sculpting::LiveLoop> live = begin_live(*options);
+  if (!live) return live.error();
+  *begun = object_of<nendo_loop>(std::make_unique<Loop>(*std::move(live)));
+  return {};
 }
 
 /// Calls `act` with a loop that runs.
@@ -122,26 +119,27 @@ extern "C" {
 
 int nendo_loop_begin(const char* model_file, const struct nendo_loop_options* options,
                      nendo_loop** begun) {
-  std::optional<Result<deform::Mesh>> mesh;
-  const int read = c::guarded([&]() -> Result<void> {
+  return c::guarded([&]() -> Result<void> {
     if (model_file == nullptr) return c::is_null("model_file");
-    mesh.emplace(deform::read_mesh(model_file));
-    return {};
+    return c::begin(options, begun, [&](const sculpting::LiveOptions& live) {
+      return sculpting::LiveLoop::begin(std::string(model_file), live);
+    });
   });
-  return read == NENDO_OK ? c::begin(*std::move(mesh), options, begun) : read;
 }
 
 int nendo_loop_begin_with(const double* vertices, size_t vertex_count, const uint32_t* triangles,
                           size_t triangle_count, const struct nendo_loop_options* options,
                           nendo_loop** begun) {
-  std::optional<Result<deform::Mesh>> mesh;
-  const int made = c::guarded([&]() -> Result<void> {
+  return c::guarded([&]() -> Result<void> {
     if (vertices == nullptr) return c::is_null("vertices");
     if (triangles == nullptr) return c::is_null("triangles");
-    mesh.emplace(c::mesh_of(vertices, vertex_count, triangles, triangle_count));
-    return {};
+    auto mesh = c::mesh_of(vertices, vertex_count, triangles, triangle_count);
+    if (!mesh) return mesh.error();
+    deform::count_from(deform::usual_offset(*mesh), *mesh);
+    return c::begin(options, begun, [&](const sculpting::LiveOptions& live) {
+      return sculpting::LiveLoop::begin(*std::move(mesh), live);
+    });
   });
-  return made == NENDO_OK ? c::begin(*std::move(mesh), options, begun) : made;
 }
 
 void nendo_loop_end(nendo_loop* loop) {
@@ -173,7 +171,7 @@ void nendo_loop_hands(nendo_loop* loop, struct nendo_hand hands[2]) {
     hands[side].flags = c::flags_of(from);
     hands[side].side = static_cast<std::uint32_t>(side);
     hands[side].samples = from.samples;
-    hands[side].time_s = std::chrono::duration<double>(from.sampled.time_since_epoch()).count();
+    hands[side].time_s = to_seconds(from.sampled.time_since_epoch());
     c::write_pose(from.angles, from.pose, hands[side]);
   }
 }
@@ -201,7 +199,8 @@ int nendo_loop_change(nendo_loop* loop, const char* setting, const char* value) 
     if (setting == nullptr) return c::is_null("setting");
     if (value == nullptr) return c::is_null("value");
     flow::LoopSettings settings = own.live.settings();
-    if (const auto changed = c::change(settings, setting, value); !changed) return changed.error();
+    if (const auto changed = flow::set_from_text(settings, setting, value); !changed)
+      return Error{Errc::usage, changed.error().message};
     return own.live.ask(flow::ChangeSettings{settings});
   });
 }

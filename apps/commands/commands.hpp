@@ -50,6 +50,8 @@ struct Row {
   Buttons group = Buttons::none;
   std::uint8_t places = everywhere;
   bool repeats = false; ///< the key repeats while it is held down in the window
+  /// The setting that it changes (flow::SettingText::name); empty: none, or several.
+  std::string_view setting{};
   /// Makes the command. `on`: is_on(), which the command then turns off.
   flow::Command (*make)(bool on) = nullptr;
   void (*choose)(flow::PendingSettings& pending, const flow::Frame& frame) = nullptr;
@@ -109,6 +111,10 @@ inline constexpr const char* no_puppet = "There is no puppet here, and fingertip
 inline constexpr const char* no_part =
     "No hand has taken a part of this model yet; take the one that "
     "is meant, in mode parts (m).";
+inline constexpr const char* no_radius =
+    "Fingertips have radii in Pull and Strokes, not in this mode; m chooses the next one.";
+inline constexpr const char* no_strength =
+    "Only brushes other than pull have a strength, in Strokes and without a puppet; w chooses one.";
 inline constexpr const char* no_trackers = "No tracker moves a hand here; start with --left-wrist "
                                            "or --right-wrist.";
 inline constexpr const char* no_recording = "There is no recording to mark; begin one with t.";

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include <nendo/flow/setting.hpp>
+
 #include "commands/commands.hpp"
 
 namespace nendo::commands {
@@ -185,6 +187,15 @@ inline const char* without_other_part(const Situation& now) {
   if (const char* const none = without_part(now)) return none;
   return now.frame.parts.count > 1 ? nullptr : "The model has no other part.";
 }
+inline const char* without_radius(const Situation& now) {
+  return flow::setting::radius.works_in(now.frame.settings.mode) ? nullptr : no_radius;
+}
+inline const char* without_strength(const Situation& now) {
+  const flow::LoopSettings& settings = now.frame.settings;
+  const bool has_effect = flow::setting::brush_strength.works_in(settings.mode) &&
+                          flow::setting::has_brush(settings) && now.frame.function_count == 0;
+  return has_effect ? nullptr : no_strength;
+}
 inline flow::Command toggle_symmetry(bool on) {
   return flow::SetSymmetry{!on};
 }
@@ -204,17 +215,24 @@ consteval Row run_row(std::string_view name, const std::array<std::string_view, 
   row.make = make;
   return row;
 }
-/// Makes a row that changes the settings of a run.
-consteval Row setting_row(std::string_view name, const std::array<std::string_view, 3>& keys,
-                          std::string_view help,
+/// Makes a row that changes a setting of a run.
+consteval Row setting_row(const flow::SettingText& setting, std::string_view name,
+                          const std::array<std::string_view, 3>& keys, std::string_view help,
                           void (*choose)(flow::PendingSettings& pending,
                                          const flow::Frame& frame)) {
-  return {.name = name, .keys = keys, .help = help, .choose = choose};
+  return {.name = name, .keys = keys, .help = help, .setting = setting.name, .choose = choose};
 }
 /// Makes a row that the window or the page executes itself.
 consteval Row own_row(std::string_view name, const std::array<std::string_view, 3>& keys,
                       std::string_view help, std::uint8_t places) {
   return {.name = name, .keys = keys, .help = help, .places = places};
+}
+/// Makes a row of the window that changes a setting by the pointer.
+consteval Row value_row(const flow::SettingText& setting, std::string_view name,
+                        const std::array<std::string_view, 3>& keys, std::string_view help) {
+  Row row = own_row(name, keys, help, in_window);
+  row.setting = setting.name;
+  return row;
 }
 inline constexpr std::uint8_t in_views = in_window | on_page | in_timeline;
 
@@ -335,33 +353,45 @@ inline constexpr std::array run_rows{
                        simple<flow::Recentre>),
                without_trackers),
     run_row("save puppet", keys("S"), "Saves the puppet, or the masks.", simple<flow::SavePuppet>),
-    setting_row("next mode", keys("m"),
+    setting_row(flow::setting::mode, "next mode", keys("m"),
                 "Chooses the next mode: type 1 (from rest), type 2 (accumulating), clay or parts.",
                 choose_next_mode),
-    setting_row("next kernel", keys("n"),
+    setting_row(flow::setting::kernel, "next kernel", keys("n"),
                 "Chooses the next kernel, which shapes a fingertip's influence.",
                 choose<&flow::PendingSettings::next_kernel>),
-    repeating(setting_row("smaller radii", keys("["), "Makes the radii smaller.",
+    repeating(setting_row(flow::setting::radius, "smaller radii", keys("["),
+                          "Makes the radii smaller.",
                           choose<&flow::PendingSettings::reduce_radii>)),
-    repeating(setting_row("larger radii", keys("]"), "Makes the radii larger.",
+    repeating(setting_row(flow::setting::radius, "larger radii", keys("]"),
+                          "Makes the radii larger.",
                           choose<&flow::PendingSettings::enlarge_radii>)),
-    setting_row("next brush", keys("w"), "Chooses the next brush of type 2 for all fingers.",
+    setting_row(flow::setting::brushes, "next brush", keys("w"),
+                "Chooses the next brush of type 2 for all fingers.",
                 choose<&flow::PendingSettings::next_brush>),
-    repeating(setting_row("weaker brush", keys("-"),
+    repeating(setting_row(flow::setting::brush_strength, "weaker brush", keys("-"),
                           "Makes the brushes weaker; below 0 their effect is reversed.",
                           choose<&flow::PendingSettings::weaken>)),
-    repeating(setting_row("stronger brush", keys("="), "Makes the brushes stronger.",
+    repeating(setting_row(flow::setting::brush_strength, "stronger brush", keys("="),
+                          "Makes the brushes stronger.",
                           choose<&flow::PendingSettings::strengthen>)),
-    setting_row("folding", keys("i"), "Turns fold prevention on or off.",
+    setting_row(flow::setting::injective, "folding", keys("i"), "Turns fold prevention on or off.",
                 choose<&flow::PendingSettings::toggle_folding>),
-    setting_row("more clay", keys(";"),
+    setting_row(flow::setting::keep_volume, "more clay", keys(";"),
                 "Keeps a quarter more of the volume; after all of it, wraps to 0.",
                 choose<&flow::PendingSettings::next_volume>),
-    setting_row("whole hand", keys("j"),
+    setting_row(flow::setting::hold, "whole hand", keys("j"),
                 "Holds the model with whole hands, or only with fingertips, in type 1.",
                 choose<&flow::PendingSettings::toggle_hold>),
-    setting_row("filter", keys("F"), "Turns smoothing of the joint angles (one-euro) on or off.",
+    setting_row(flow::setting::filter, "filter", keys("A"),
+                "Turns smoothing of the joint angles (one-euro) on or off.",
                 choose<&flow::PendingSettings::toggle_filter>),
+    refused_if(value_row(flow::setting::radius, "set radius", keys("f"),
+                         "Sets the radii by moving the pointer sideways, or by typing; a click or "
+                         "Enter confirms, Esc cancels."),
+               without_radius),
+    refused_if(value_row(flow::setting::brush_strength, "set strength", keys("F"),
+                         "Sets the strength of brushes in the same way."),
+               without_strength),
     shown_at(
         run_row("end run", keys("q"), "Ends the run, and writes the shape.", simple<flow::EndRun>),
         in_terminal | in_window),
@@ -383,7 +413,7 @@ inline constexpr std::array run_rows{
     own_row("show vectors", keys("v"), "Shows the control vectors, or hides them.", in_views),
     own_row("show radii", keys("d"), "Shows the radii, or hides them.", in_views),
     own_row("show contact", keys("0"), "Shows where hands touch clay, or hides it.", in_views),
-    own_row("show facets", keys("f"), "Switches between flat and smooth shading.", in_views),
+    own_row("show facets", keys("W"), "Switches between flat and smooth shading.", in_views),
     own_row("view front", keys("1"), "Looks from the front, with Ctrl from the back.", in_views),
     own_row("view right", keys("3"), "Looks from the right, with Ctrl from the left.", in_views),
     own_row("view top", keys("7"), "Looks from the top, with Ctrl from the bottom.", in_views),

@@ -141,7 +141,7 @@ std::unique_ptr<Session> begin(const py::object& model, const std::string& left,
   options.right = right;
   options.calibration.user = user;
   options.calibration.calibration = calibration;
-  options.mode = choice_of(mode, "mode", flow::mode_names, flow::mode_named);
+  options.mode = choice_of(mode, "mode", flow::setting::mode.choices(), flow::mode_named);
   options.model_size_m = model_size_m;
   options.radius_m = radius_m;
   options.pace.rate_hz = rate_hz;
@@ -178,46 +178,26 @@ py::dict dict_of(const flow::LoopSettings& settings) {
   return all;
 }
 
-void set(const flow::SwitchSetting& setting, flow::LoopSettings& settings,
-         const py::handle& value) {
-  setting.of(settings) = argument_as<bool>(value, setting.name, "True or False");
-}
-void set(const flow::NumberSetting& setting, flow::LoopSettings& settings,
-         const py::handle& value) {
-  setting.of(settings) = argument_as<double>(value, setting.name, "a number");
-}
-void set(const flow::FingersSetting& setting, flow::LoopSettings& settings,
-         const py::handle& value) {
-  if (py::isinstance<py::sequence>(value))
-    setting.of(settings) =
-        argument_as<std::array<double, 5>>(value, setting.name, "one number, or five,");
-  else
-    setting.of(settings).fill(argument_as<double>(value, setting.name, "one number, or five,"));
-}
-void set(const flow::BrushesSetting& setting, flow::LoopSettings& settings,
-         const py::handle& value) {
-  setting.of(settings) =
-      choice_of(argument_as<std::string>(value, setting.name, "a text"), "brushes",
-                "one name of a brush, or five with commas between", flow::parse_brushes);
-}
-template <class T>
-void set(const flow::ChoiceSetting<T>& setting, flow::LoopSettings& settings,
-         const py::handle& value) {
-  setting.of(settings) = choice_of(argument_as<std::string>(value, setting.name, "a text"),
-                                   setting.name, setting.choices, setting.named);
+/// Returns a value for flow::set_from_text().
+std::string value_text(const py::handle& value) {
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  if (py::isinstance<py::str>(value) || !py::isinstance<py::sequence>(value))
+    return py::str(value).cast<std::string>();
+  std::string text;
+  for (const py::handle item : value.cast<py::sequence>())
+    text += (text.empty() ? "" : ",") + value_text(item);
+  return text;
 }
 
 void change(Session& session, const py::kwargs& wanted) {
   flow::LoopSettings settings = session.settings();
-  std::size_t known = 0;
-  flow::for_each_setting([&](const auto& setting) {
-    const py::str name = to_str(setting.name);
-    if (!wanted.contains(name)) return;
-    ++known;
-    set(setting, settings, wanted[name]);
-  });
-  if (known != wanted.size())
-    throw py::type_error("there is no such setting; see Session.settings");
+  const py::dict known = dict_of(settings);
+  for (const auto& [name, value] : wanted) {
+    if (!known.contains(name))
+      throw py::type_error("there is no such setting; see Session.settings");
+    const auto set = flow::set_from_text(settings, name.cast<std::string>(), value_text(value));
+    if (!set) throw py::value_error(set.error().message);
+  }
   session.ask(flow::ChangeSettings{settings});
 }
 

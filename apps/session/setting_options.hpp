@@ -30,7 +30,7 @@ template <class T>
 Result<T> parse_setting(const flow::ChoiceSetting<T>& choice, const std::string& text) {
   if (const auto named = choice.named(text)) return *named;
   return Error{Errc::usage,
-               fmt::format("{} {}: unknown; use {}", choice.option, text, choice.choices)};
+               fmt::format("{} {}: unknown; use {}", choice.option, text, choice.choices())};
 }
 
 /// The values of several options of settings.

@@ -102,18 +102,8 @@ void edit_buttons(commands::Buttons group, const commands::EditFacts& now, float
 }
 
 void show_help(std::string_view name, std::string_view text) {
-  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
   const commands::Row& row = *commands::named(name);
   show_text(std::string(text.empty() ? row.help : text) + " (" + commands::keys_of(row) + ")");
-}
-
-void show_text(std::string_view text) {
-  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(em(24.0F));
-  ImGui::TextUnformatted(text.data(), text.data() + text.size());
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
 }
 
 void draw_key_list(std::uint8_t places, const char* mouse, bool& shown) {

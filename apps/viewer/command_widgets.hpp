@@ -40,8 +40,6 @@ template <class Now>
 void show_help(const commands::Row& row, const Now& now);
 /// Shows a tooltip with `text`, or else the row's help, and the keys of the row of that name.
 void show_help(std::string_view name, std::string_view text = {});
-/// Shows a tooltip with this text for the latest item.
-void show_text(std::string_view text);
 
 /// Draws the key list for `places`, then the mouse actions of the camera, then `mouse`, those of
 /// the window. Sets `shown` to false when the user closes the list.

@@ -18,5 +18,7 @@ struct Control {
 /// Returns the controls that were drawn since forget_controls(). Main thread.
 std::span<const Control> controls() noexcept;
 void forget_controls() noexcept;
+/// Returns the tooltip of the current picture; empty: none.
+const std::string& tooltip() noexcept;
 
 } // namespace nendo::viewer

@@ -17,6 +17,11 @@ std::vector<Control>& noted() {
   return all;
 }
 
+std::string& shown_tooltip() {
+  static std::string text;
+  return text;
+}
+
 float width_of(std::string_view text) {
   return ImGui::CalcTextSize(text.data(), text.data() + text.size()).x;
 }
@@ -59,6 +64,21 @@ std::span<const Control> controls() noexcept {
 
 void forget_controls() noexcept {
   noted().clear();
+  shown_tooltip().clear();
+}
+
+const std::string& tooltip() noexcept {
+  return shown_tooltip();
+}
+
+void show_text(std::string_view text) {
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  shown_tooltip() = text;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(em(24.0F));
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
 }
 
 void note_control(std::string_view name, std::string_view text, float around) {
@@ -88,25 +108,39 @@ bool check(std::string_view name, bool& value) {
   return changed;
 }
 
-bool section(std::string_view name, bool is_open_at_first) {
+bool section(std::string_view name, std::string_view help, bool is_open_at_first) {
   const bool is_open = ImGui::CollapsingHeader(
       std::string(name).c_str(), is_open_at_first ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   note_control(name, name, ImGui::GetFrameHeight());
+  show_text(help);
   return is_open;
 }
 
-bool one_of(std::span<const std::string_view> names, std::size_t& chosen, std::size_t in_line) {
+bool one_of(std::span<const Choice> choices, std::size_t& chosen, std::size_t in_line,
+            Picture picture) {
   bool changed = false;
   const float width = share_of_line(in_line);
-  for (std::size_t at = 0; at < names.size(); ++at) {
+  const float high = picture != nullptr ? em(2.2F) : 0.0F;
+  const ImVec2 pad = ImGui::GetStyle().FramePadding;
+  for (std::size_t at = 0; at < choices.size(); ++at) {
     if (at % in_line != 0) ImGui::SameLine();
     const bool is_chosen = at == chosen;
     if (is_chosen) {
       ImGui::PushStyleColor(ImGuiCol_Button, accent());
       ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0F, 1.0F, 1.0F, 1.0F));
     }
-    const bool pressed = button(names[at], width);
+    ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.5F, 1.0F));
+    const bool pressed = ImGui::Button(std::string(choices[at].name).c_str(),
+                                       ImVec2(width, ImGui::GetFrameHeight() + high));
+    ImGui::PopStyleVar();
+    if (picture != nullptr) {
+      const ImVec2 low = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
+      picture(*ImGui::GetWindowDrawList(), {low.x + pad.x, low.y + pad.y},
+              {end.x - pad.x, low.y + pad.y + high}, at, ImGui::GetColorU32(ImGuiCol_Text));
+    }
     if (is_chosen) ImGui::PopStyleColor(2);
+    note_control(choices[at].name, choices[at].name, 2.0F);
+    show_text(choices[at].help);
     if (!pressed) continue;
     changed = changed || !is_chosen;
     chosen = at;
@@ -131,12 +165,16 @@ bool bar_field(std::string_view name, float& value, float min, float max, const 
 }
 
 bool number_field(std::string_view text, float& value, float min, float max, const char* format) {
+  ImGui::BeginGroup();
   label(text);
-  return bar_field(text, value, min, max, format, 0.0F);
+  const bool changed = bar_field(text, value, min, max, format, 0.0F);
+  ImGui::EndGroup();
+  return changed;
 }
 
 bool choice_field(std::string_view text, std::span<const std::string_view> names,
                   std::size_t& chosen) {
+  ImGui::BeginGroup();
   label(text);
   bool changed = false;
   const std::string now(names[chosen]);
@@ -152,6 +190,7 @@ bool choice_field(std::string_view text, std::span<const std::string_view> names
   }
   ImGui::PopID();
   if (!is_open) note_control(text, now, ImGui::GetFrameHeight());
+  ImGui::EndGroup();
   return changed;
 }
 

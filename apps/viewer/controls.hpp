@@ -4,6 +4,7 @@
 // Main thread.
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include <imgui.h>
@@ -12,6 +13,8 @@
 
 namespace nendo::viewer {
 
+/// Shows a tooltip for the latest item, also where it is grey.
+void show_text(std::string_view text);
 /// Notes the latest item of ImGui. text: what it shows. around: the width beside the text.
 void note_control(std::string_view name, std::string_view text, float around = 0.0F);
 
@@ -20,16 +23,25 @@ bool button(std::string_view name, float width = 0.0F, bool is_possible = true);
 /// A box with its name at the right.
 bool check(std::string_view name, bool& value);
 /// A header that opens and closes what follows it. Returns whether it is open.
-bool section(std::string_view name, bool is_open_at_first);
-/// Buttons in lines of `in_line`, of which one is chosen.
-bool one_of(std::span<const std::string_view> names, std::size_t& chosen, std::size_t in_line);
+bool section(std::string_view name, std::string_view help, bool is_open_at_first);
+
+struct Choice {
+  std::string_view name;
+  std::string help; ///< its tooltip
+};
+/// Draws the choice of that number into a rectangle.
+using Picture = void (*)(ImDrawList& list, ImVec2 low, ImVec2 high, std::size_t at, ImU32 colour);
+/// Buttons in lines of `in_line`, of which one is chosen, with pictures above their names; null:
+/// names alone.
+bool one_of(std::span<const Choice> choices, std::size_t& chosen, std::size_t in_line,
+            Picture picture = nullptr);
 
 /// A number that is dragged, typed after a double click, or changed by the wheel with ctrl;
 /// `format` says what it is. Width 0: the rest of the line.
 bool bar_field(std::string_view name, float& value, float min, float max, const char* format,
                float width);
 
-// Fields with a label at the left:
+// Fields with a label at the left, both of which are the latest item:
 
 bool number_field(std::string_view label, float& value, float min, float max, const char* format);
 /// A list of names, of which one is chosen.

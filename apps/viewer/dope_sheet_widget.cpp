@@ -278,6 +278,7 @@ void DopeSheetWidget::controls(const TimelineView& view, EditActions& actions) c
   auto speed = static_cast<float>(view.speed);
   if (bar_field("speed", speed, 0.1F, 4.0F, "speed %.2f", em(7.4F)))
     actions.speed = static_cast<double>(speed);
+  show_text("How fast the timeline plays (Ctrl Up, Ctrl Down).");
   ImGui::SameLine();
   ImGui::Text("%.3f s of %.3f s", view.head_s, view.duration_s);
   ImGui::SameLine();

@@ -38,6 +38,7 @@ bool draw_hints(int covered_px) {
   ImGui::TextDisabled("F3 finds any command, ? lists the keys.");
   ImGui::SameLine();
   const bool is_done = button("Do not show again");
+  show_text("Closes these hints for good.");
   ImGui::End();
   return is_done;
 }

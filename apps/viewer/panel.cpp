@@ -5,9 +5,12 @@
 #include <cstdio>
 #include <utility>
 
+#include <nendo/flow/setting.hpp>
+
 #include "viewer/command_widgets.hpp"
 #include "viewer/controls.hpp"
 #include "viewer/hints.hpp"
+#include "viewer/puppet_tool.hpp"
 #include "viewer/status_bar.hpp"
 #include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
@@ -44,7 +47,7 @@ std::array<float, 15> bends_of(const hand::HandPose& pose) {
   return bends;
 }
 
-void chart(const char* name, const Strip& strip, const char* unit) {
+void chart(const char* name, const char* help, const Strip& strip, const char* unit) {
   char words[64];
   std::snprintf(words, sizeof words, "%s, most %.2f %s", name, static_cast<double>(strip.most()),
                 unit);
@@ -53,6 +56,25 @@ void chart(const char* name, const Strip& strip, const char* unit) {
                    std::max(1.0F, strip.most()),
                    ImVec2(ImGui::GetContentRegionAvail().x, em(3.0F)));
   ImGui::PopID();
+  show_text(help);
+}
+
+/// Returns the metres of a pixel at the model under the mouse or, beside it, at what the camera
+/// looks at.
+double metres_of_pixel(const flow::Frame& frame, const SceneWindow& window,
+                       const PuppetEditor& editor) {
+  const double units = frame.units_per_metre;
+  const deform::Points& rest = editor.model().vertices;
+  deform::Mesh shape = editor.seen();
+  if (!editor.is_on() && rest.cols() > 0) {
+    const deform::BlockLayout layout(rest);
+    if (frame.shape.block_count() == layout.block_count())
+      layout.unpack(frame.shape, shape.vertices);
+  }
+  const render::Camera camera = window.stage_camera();
+  const auto hit = hit_of_mouse(window, units, shape, rest);
+  const Eigen::Vector3d place = hit ? Eigen::Vector3d(hit->at / units) : camera.target;
+  return way_in_picture(camera, place, 1.0, 0.0, window.scene_size().height).norm();
 }
 
 /// Undoes, or does again, all steps up to the one with that number; 0: also the first of the list.
@@ -136,6 +158,7 @@ void LiveWindow::Panel::history(const flow::Frame& frame, Commands& commands) {
       ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
     const bool is_present = at == list.undoable;
     if (ImGui::Selectable(words, is_present)) go_to_step(list, at, commands);
+    show_text("Undoes, or does again, all steps up to here.");
     if (is_present && std::exchange(history_shown, list.version) != list.version)
       ImGui::SetScrollHereY(0.5F);
     if (is_undone) ImGui::PopStyleColor();
@@ -151,18 +174,17 @@ void LiveWindow::Panel::clay(const flow::Frame& frame) {
     ImGui::TextWrapped("volume not kept: no closed surface");
     return;
   }
-  const double units = frame.units_per_metre;
-  const double cm3 = 1e6 / (units * units * units);
-  ImGui::Text("volume %.1f cm3, at first %.1f", cm3 * clay.volume, cm3 * clay.first_volume);
+  ImGui::Text("volume %s, at first %s", volume_text(frame, clay.volume).c_str(),
+              volume_text(frame, clay.first_volume).c_str());
 }
 
 void LiveWindow::Panel::timing(const flow::Frame& frame) const {
   ImGui::TextWrapped(
       "%llu ticks, %llu commits, %llu undone", static_cast<unsigned long long>(frame.ticks_run),
       static_cast<unsigned long long>(frame.commits), static_cast<unsigned long long>(frame.undos));
-  chart("late", late_ms, "ms");
-  chart("uneven", gap_ms, "ms");
-  chart("picture", pictures_ms, "ms");
+  chart("late", "How late ticks began.", late_ms, "ms");
+  chart("uneven", "How much the time between ticks differed from the rate.", gap_ms, "ms");
+  chart("picture", "How long pictures of this window took.", pictures_ms, "ms");
 }
 
 void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) {
@@ -180,6 +202,7 @@ void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) {
                          "thumb to little, degrees", 0.0F, 110.0F,
                          ImVec2(ImGui::GetContentRegionAvail().x, em(3.4F)));
     ImGui::PopID();
+    show_text("How far each joint is bent, three of each finger.");
   }
 }
 
@@ -187,24 +210,27 @@ void LiveWindow::Panel::sections(const flow::Frame& frame, const Gauges& gauges,
                                  SceneWindow& window, PuppetEditor& editor, Commands& commands) {
   const commands::Situation now{frame, gauges.facts};
   const auto draw_puppet = [&] {
-    if (section("Puppet", true)) Panel::puppet(editor, commands);
+    if (section("Puppet", "What each finger moves, as points on the model.", true))
+      Panel::puppet(editor, commands);
   };
   // While a puppet is edited, nothing is needed as much as this.
   const bool edits = editor.is_on() && !editor.paints_masks();
   if (edits) draw_puppet();
   SettingControls::draw_modes(pending.now);
   buttons_of(commands::Buttons::hands, now, commands);
-  if (section("Tool", true)) {
+  if (section("Tool", "The settings that have an effect in this mode.", true)) {
     settings.draw(pending.now);
     masks(editor, now, commands);
   }
-  if (section("History", true)) history(frame, commands);
-  if (section("Model", false)) buttons_of(commands::Buttons::model, now, commands);
+  if (section("History", "The steps so far; a click goes to one.", true)) history(frame, commands);
+  if (section("Model", "Changes of the model itself, which undo reverts.", false))
+    buttons_of(commands::Buttons::model, now, commands);
   if (!edits) draw_puppet();
-  if (frame.clay.is_clay && section("Contact", true)) Panel::clay(frame);
-  if (section("View", false)) parts(window);
-  if (section("Gloves", false)) hands(frame, gauges);
-  if (section("Timing", false)) timing(frame);
+  if (frame.clay.is_clay && section("Contact", "Where the hands touch the clay.", true))
+    Panel::clay(frame);
+  if (section("View", "What is drawn besides the model.", false)) parts(window);
+  if (section("Gloves", "The devices of the hands, and their joints.", false)) hands(frame, gauges);
+  if (section("Timing", "How even the loop and the pictures are.", false)) timing(frame);
 }
 
 void LiveWindow::Panel::draw(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
@@ -228,7 +254,9 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
   panel_->draw(frame, gauges, *window_, *editor_, commands);
   if (!commands.empty()) panel_->note.clear();
   panel_->keys({frame, gauges.facts}, *window_, *editor_, commands);
-  panel_->message = panel_->note.empty() ? gauges.report : panel_->note;
+  panel_->message = panel_->gesture.is_on() ? panel_->gesture.message()
+                    : panel_->note.empty()  ? gauges.report
+                                            : panel_->note;
   draw_status_bar(frame, gauges, panel_->message);
   if (hints_ && draw_hints(panel_->covered_px())) hints_ = false;
   if (const auto change = panel_->pending.ask()) commands.push_back(*change);
@@ -239,6 +267,41 @@ void LiveWindow::Panel::ask(const commands::Row& row, const commands::Situation&
   const commands::Answer answer = commands::press(row, now, pending);
   if (answer.command) commands.push_back(*answer.command);
   note = answer.refusal != nullptr ? answer.refusal : "";
+}
+
+void LiveWindow::Panel::begin_gesture(const commands::Row& row, const commands::Situation& now,
+                                      const SceneWindow& window, PuppetEditor& editor) {
+  using flow::setting::brush_strength;
+  const bool is_radius = row.setting == flow::setting::radius.name;
+  const bool is_editor = is_radius && editor.is_on(); // of its brush or of its points
+  const char* const refusal = is_editor ? nullptr : row.refusal_in(now);
+  note = refusal != nullptr ? refusal : "";
+  if (refusal != nullptr) return;
+  if (!is_radius) {
+    gesture.begin({std::string(brush_strength.label), "", pending.now.brush_strength,
+                   brush_strength.range, 2},
+                  [this](double strength) { pending.now.brush_strength = strength; });
+    return;
+  }
+  const double cm_of_pixel = 100.0 * metres_of_pixel(now.frame, window, editor);
+  const auto begin = [&](double first_cm, const flow::Range& range, auto use) {
+    gesture.begin({"radius", "cm", first_cm, range, 1, cm_of_pixel},
+                  [first_cm, use](double cm) { use(cm / first_cm); });
+  };
+  if (is_editor) {
+    const double radius = editor.brushes() ? editor.brush_radius() : editor.radius();
+    begin(100.0 * radius / now.frame.units_per_metre, {0.1, 1000.0},
+          [&editor](double factor) { editor.multiply_radius(factor); });
+    return;
+  }
+  const auto& radii_m = pending.now.radius_m; // all keep their ratios to the largest
+  const flow::Range& handy_m = flow::setting::radius.handy;
+  begin(100.0 * *std::max_element(radii_m.begin(), radii_m.end()),
+        {100.0 * handy_m.min, 100.0 * handy_m.max}, [this, radii_m](double factor) {
+          for (std::size_t finger = 0; finger < radii_m.size(); ++finger)
+            pending.now.radius_m[finger] =
+                flow::setting::radius.range.nearest(factor * radii_m[finger]);
+        });
 }
 
 /// Executes a command that concerns the window alone.
@@ -267,10 +330,14 @@ void LiveWindow::Panel::keys(const commands::Situation& now, SceneWindow& window
   const auto take = [&](const commands::Row& row) {
     if (row.is_for_run())
       ask(row, now, commands);
+    else if (!row.setting.empty())
+      begin_gesture(row, now, window, editor);
     else
       execute(row.name, window, editor, commands);
   };
-  if (takes_keys()) {
+  if (gesture.is_on()) {
+    gesture.follow(); // which takes all keys
+  } else if (takes_keys()) {
     window.follow_part_keys();
     window.follow_view_keys();
     for (const commands::Row& row : commands::table())

@@ -13,6 +13,7 @@
 #include "viewer/live_window.hpp"
 #include "viewer/puppet_editor.hpp"
 #include "viewer/setting_controls.hpp"
+#include "viewer/value_gesture.hpp"
 
 namespace nendo::viewer {
 
@@ -37,6 +38,7 @@ struct LiveWindow::Panel {
   flow::PendingSettings pending;
   SettingControls settings;
   CommandSearch search;
+  ValueGesture gesture;
   Strip late_ms, gap_ms, pictures_ms;
   bool keys_shown = false;
   std::uint64_t history_shown = 0; ///< the list's version
@@ -72,6 +74,9 @@ private:
   void timing(const flow::Frame& frame) const;
   static void hands(const flow::Frame& frame, const Gauges& gauges);
   void ask(const commands::Row& row, const commands::Situation& now, Commands& commands);
+  /// Begins to change a radius, or the strength, by the pointer.
+  void begin_gesture(const commands::Row& row, const commands::Situation& now,
+                     const SceneWindow& window, PuppetEditor& editor);
   void execute(std::string_view name, SceneWindow& window, PuppetEditor& editor,
                Commands& commands);
 };

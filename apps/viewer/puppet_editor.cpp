@@ -384,7 +384,10 @@ Vector3d PuppetEditor::way_of(std::size_t point) const {
 }
 
 void PuppetEditor::scale_radius(double steps) {
-  const double factor = std::pow(factor_per_step, std::clamp(steps, -10.0, 10.0));
+  multiply_radius(std::pow(factor_per_step, std::clamp(steps, -10.0, 10.0)));
+}
+
+void PuppetEditor::multiply_radius(double factor) {
   const double diagonal = deform::diagonal_of(loaded_.vertices);
   const auto within = [&](double radius) {
     return std::clamp(radius * factor, 0.003 * diagonal, 2.0 * diagonal);

@@ -83,7 +83,8 @@ public:
   /// Increases the radius of the chosen point, or of new places, by `steps` tenths. The loop gets
   /// it when no step has come for a while, so that it is one edit.
   void scale_radius(double steps);
-  double radius() const noexcept; ///< the radius of the chosen point, or of new places
+  void multiply_radius(double factor); ///< does the same by a factor
+  double radius() const noexcept;      ///< the radius of the chosen point, or of new places
 
   // The brush for masks.
 

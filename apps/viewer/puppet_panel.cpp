@@ -23,7 +23,9 @@ void choose_finger(PuppetEditor& editor) {
                               ? "choose a finger"
                               : editor.rig().puppet().functions[function].input.name();
   ImGui::SetNextItemWidth(-1.0F);
-  if (!ImGui::BeginCombo("##finger", now.c_str())) return;
+  const bool is_open = ImGui::BeginCombo("##finger", now.c_str());
+  show_text("The finger that moves the new point, or the chosen function.");
+  if (!is_open) return;
   for (const Side side : {Side::left, Side::right})
     for (std::size_t finger = 0; finger < hand::finger_count; ++finger) {
       const auto signal = puppet::HandSignal::numbered(side, static_cast<std::uint8_t>(finger));
@@ -40,6 +42,7 @@ void list_functions(PuppetEditor& editor) {
   for (std::size_t at = 0; at < functions.size(); ++at) {
     const std::string words = functions[at].name + ": " + functions[at].input.name();
     if (ImGui::Selectable(words.c_str(), at == editor.function())) editor.choose_function(at);
+    show_text("A function, and the finger that plays it; a click chooses it.");
   }
   ImGui::EndChild();
 }
@@ -52,8 +55,7 @@ void name_function(PuppetEditor& editor) {
   std::copy_n(now.begin(), std::min(now.size(), name.size() - 1), name.begin());
   ImGui::SetNextItemWidth(-1.0F);
   ImGui::InputText("##name", name.data(), name.size());
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("The function's name; ARKit's are known to other programs");
+  show_text("The function's name; ARKit's are known to other programs.");
   if (ImGui::IsItemDeactivatedAfterEdit()) editor.rename_function(name.data());
 }
 

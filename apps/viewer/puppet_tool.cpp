@@ -107,15 +107,14 @@ void drag_turn(const render::Camera& camera, render::Size size, double units_per
   editor.turn_by((away ? -1.0 : 1.0) * turned_deg(*pivot, from, to));
 }
 
-/// The place of the model under the mouse.
+} // namespace
+
 std::optional<SurfaceHit> hit_of_mouse(const SceneWindow& window, double units_per_metre,
-                                       const PuppetEditor& editor) {
+                                       const deform::Mesh& shape, const deform::Points& rest) {
   Ray ray = ray_at(window.stage_camera(), pointer_now(), window.scene_size());
   ray.from *= units_per_metre;
-  return first_hit(editor.seen(), ray, &editor.model().vertices);
+  return first_hit(shape, ray, &rest);
 }
-
-} // namespace
 
 const std::vector<render::Surface>& PuppetMarks::veils(const PuppetEditor& editor,
                                                        const render::SceneBuilder& builder) {
@@ -255,7 +254,7 @@ void draw_points(const PuppetEditor& editor, const render::Camera& stage_camera,
 bool PuppetTool::brush(const SceneWindow& window, double units_per_metre, PuppetEditor& editor) {
   const bool begins = ImGui::IsMouseClicked(ImGuiMouseButton_Left);
   if (!paints_ && !begins) return false;
-  const auto place = hit_of_mouse(window, units_per_metre, editor);
+  const auto place = hit_of_mouse(window, units_per_metre, editor.seen(), editor.model().vertices);
   if (begins) paints_ = place.has_value(); // beside the model, the mouse turns the camera
   if (!paints_) return false;
   if (place) editor.paint(*place, ImGui::GetIO().KeyShift);
@@ -322,7 +321,9 @@ bool PuppetTool::follow(const SceneWindow& window, double units_per_metre, Puppe
     const bool is_click = (pointer_now() - *pressed_at_).norm() <= still_px;
     pressed_at_.reset();
     if (is_click)
-      if (const auto place = hit_of_mouse(window, units_per_metre, editor)) editor.place(*place);
+      if (const auto place =
+              hit_of_mouse(window, units_per_metre, editor.seen(), editor.model().vertices))
+        editor.place(*place);
   }
   return false;
 }

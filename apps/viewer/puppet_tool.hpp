@@ -41,6 +41,11 @@ private:
 void draw_points(const PuppetEditor& editor, const render::Camera& stage_camera, render::Size size,
                  double units_per_metre, std::size_t hovered);
 
+/// Returns the place under the mouse of a model in this shape, in model units; nothing if the mouse
+/// is beside it. `rest` determines its triangulation.
+std::optional<SurfaceHit> hit_of_mouse(const SceneWindow& window, double units_per_metre,
+                                       const deform::Mesh& shape, const deform::Points& rest);
+
 class PuppetTool {
 public:
   /// Handles the mouse: a click places or chooses a point; a drag sets its displacement, with shift

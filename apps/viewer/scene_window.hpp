@@ -55,7 +55,7 @@ public:
   void move_camera();
   /// Moves the camera, without rotation, so that all of the model and the hands is visible.
   void frame_all();
-  /// Handles the keys h, b, v, d, 0 and f, which toggle parts of the scene, unless a text field or
+  /// Handles the keys h, b, v, d, 0 and W, which toggle parts of the scene, unless a text field or
   /// dialog is active.
   void follow_part_keys();
   /// Handles the keys 1, 3 and 7: views from the front, right and top, with ctrl from the back,

@@ -1,7 +1,6 @@
 #include "viewer/setting_controls.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -10,84 +9,61 @@
 #include <nendo/flow/setting.hpp>
 #include <nendo/hand/joints.hpp>
 
-#include "viewer/command_widgets.hpp"
+#include "commands/commands.hpp"
 #include "viewer/controls.hpp"
+#include "viewer/setting_pictures.hpp"
 
 namespace nendo::viewer {
 namespace {
 
-/// The row of the command table that changes a setting by a key; "": none does.
-std::string_view row_of(std::string_view setting) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> rows{
-      {{"kernel", "next kernel"},
-       {"injective", "folding"},
-       {"radius_m", "larger radii"},
-       {"brushes", "next brush"},
-       {"brush_strength", "stronger brush"},
-       {"keep_volume", "more clay"},
-       {"hold", "whole hand"},
-       {"filter", "filter"}}};
-  const auto* const found =
-      std::find_if(rows.begin(), rows.end(), [&](const auto& one) { return one.first == setting; });
-  return found == rows.end() ? "" : found->second;
-}
-
-void show_setting_help(const flow::SettingText& setting) {
-  if (const std::string_view row = row_of(setting.name); !row.empty()) {
-    show_help(row, setting.help);
-  } else {
-    show_text(setting.help);
-  }
-}
-
-/// Returns the names of a list such as "off, mild or strong".
-std::vector<std::string_view> names_in(std::string_view list) {
-  std::vector<std::string_view> names;
-  while (!list.empty()) {
-    const std::size_t comma = list.find(", "), last = list.find(" or ");
-    const std::size_t end = std::min(comma, last);
-    names.push_back(list.substr(0, end));
-    if (end == std::string_view::npos) break;
-    list.remove_prefix(end + (end == comma ? 2 : 4));
-  }
-  return names;
+/// Returns what the setting does, the range of its widget, and the keys that change it.
+std::string help_of(const flow::SettingText& setting, const std::string& range = {}) {
+  std::string text(setting.tip.empty() ? setting.help : setting.tip);
+  if (!range.empty()) text += "\n" + range + "; drag, double click to type, or ctrl and the wheel";
+  for (const commands::Row& row : commands::table())
+    if (row.setting == setting.name && (row.places & commands::in_window) != 0)
+      text += "\n" + commands::keys_of(row) + ": " + std::string(row.name);
+  return text;
 }
 
 void draw(const flow::SwitchSetting& setting, flow::LoopSettings& chosen) {
   check(setting.label, setting.of(chosen));
-  show_setting_help(setting);
+  show_text(help_of(setting));
 }
 
 void draw(const flow::NumberSetting& setting, flow::LoopSettings& chosen) {
   if (setting.has_effect != nullptr && !setting.has_effect(chosen)) return;
   auto value = static_cast<float>(setting.of(chosen));
-  const auto min = static_cast<float>(setting.range.min);
-  const auto max = static_cast<float>(std::min(setting.range.max, 20.0)); // larger ones have no use
-  if (number_field(setting.label, value, min, max, "%.2f"))
+  const flow::Range range{setting.range.min, std::min(setting.range.max, 20.0)}; // more has no use
+  const std::string format = "%.2f" + (setting.unit.empty() ? "" : " " + std::string(setting.unit));
+  if (number_field(setting.label, value, static_cast<float>(range.min),
+                   static_cast<float>(range.max), format.c_str()))
     setting.of(chosen) =
         setting.range.nearest(std::round(100.0 * static_cast<double>(value)) / 100.0);
-  show_setting_help(setting);
+  show_text(help_of(setting, in_words(range, setting.unit)));
 }
 
 template <class T>
 void draw(const flow::ChoiceSetting<T>& setting, flow::LoopSettings& chosen) {
-  const std::vector<std::string_view> names = names_in(setting.choices);
-  const auto found = std::find(names.begin(), names.end(), setting.name_of(setting.of(chosen)));
-  auto at = static_cast<std::size_t>(found - names.begin()) % names.size();
-  bool is_changed = false;
-  if (names.size() == 2) { // the second one is what the label says
+  const std::vector<std::string_view> names = setting.names();
+  T& value = setting.of(chosen);
+  auto at = static_cast<std::size_t>(value);
+  if constexpr (std::is_same_v<T, deform::Wendland>) {
+    std::vector<Choice> choices;
+    for (const std::string_view name : names)
+      choices.push_back({name.substr(name.find('-') + 1), help_of(setting)});
+    one_of(choices, at, names.size(), draw_kernel);
+  } else { // the second one is what the label says
+    static_assert(sizeof(T) == 1);
     bool is_on = at == 1;
-    is_changed = check(setting.label, is_on);
+    check(setting.label, is_on);
     at = is_on ? 1 : 0;
-  } else {
-    is_changed = choice_field(setting.label, names, at);
+    show_text(help_of(setting));
   }
-  if (is_changed)
-    if (const auto named = setting.named(names[at])) setting.of(chosen) = *named;
-  show_setting_help(setting);
+  value = static_cast<T>(at);
 }
 
-/// Calls draw_one(label, index) for all fingers together, or for each.
+/// Calls draw_one(label, value) for all fingers together, or for each.
 template <class Values, class DrawOne>
 void draw_fingers(const flow::SettingText& setting, bool& is_one, Values& values,
                   const DrawOne& draw_one) {
@@ -95,29 +71,41 @@ void draw_fingers(const flow::SettingText& setting, bool& is_one, Values& values
     ImGui::PushID(setting.name.data());
     draw_one(is_one ? setting.label : name_of(static_cast<hand::Finger>(finger)), values[finger]);
     ImGui::PopID();
-    show_setting_help(setting);
   }
-  check("one " + std::string(setting.label) + " for all fingers", is_one);
+  const std::string label(setting.label);
+  check("one " + label + " for all fingers", is_one);
+  show_text("All fingers have the same " + label + ", or each its own.");
   if (is_one) values.fill(values[0]);
 }
 
 void draw_radii(const flow::FingersSetting& setting, bool& is_one, flow::LoopSettings& chosen) {
+  const flow::Range range{100.0 * setting.handy.min, 100.0 * setting.handy.max};
   draw_fingers(setting, is_one, setting.of(chosen), [&](std::string_view label, double& radius_m) {
     auto cm = static_cast<float>(100.0 * radius_m);
-    if (number_field(label, cm, static_cast<float>(100.0 * setting.handy.min),
-                     static_cast<float>(100.0 * setting.handy.max), "%.1f cm"))
+    if (number_field(label, cm, static_cast<float>(range.min), static_cast<float>(range.max),
+                     "%.1f cm"))
       radius_m = setting.handy.nearest(static_cast<double>(cm) / 100.0);
+    show_text(help_of(setting, in_words(range, "cm")));
   });
 }
 
 void draw_brushes(const flow::BrushesSetting& setting, bool& is_one, flow::LoopSettings& chosen) {
+  std::vector<Choice> choices;
+  std::vector<std::string_view> names;
+  for (std::size_t at = 0; at < deform::brush_count; ++at) {
+    names.push_back(name_of(static_cast<deform::Brush>(at)));
+    choices.push_back({names.back(), std::string(flow::brush_helps[at])});
+  }
   draw_fingers(setting, is_one, setting.of(chosen),
-               [](std::string_view label, deform::Brush& brush) {
-                 std::array<std::string_view, deform::brush_count> names;
-                 for (std::uint8_t at = 0; at < deform::brush_count; ++at)
-                   names[at] = name_of(static_cast<deform::Brush>(at));
+               [&](std::string_view label, deform::Brush& brush) {
                  auto at = static_cast<std::size_t>(brush);
-                 if (choice_field(label, names, at)) brush = static_cast<deform::Brush>(at);
+                 if (is_one) {
+                   one_of(choices, at, 3, draw_brush);
+                 } else {
+                   choice_field(label, names, at);
+                   show_text(choices[at].help + "\n" + help_of(setting));
+                 }
+                 brush = static_cast<deform::Brush>(at);
                });
 }
 
@@ -129,10 +117,13 @@ void SettingControls::follow(const flow::PendingSettings& pending) noexcept {
 }
 
 void SettingControls::draw_modes(flow::LoopSettings& chosen) {
+  const std::string keys = "\n" + commands::keys_of(*commands::named("next mode")) + ": next mode";
+  std::vector<Choice> choices;
+  for (std::size_t at = 0; at < flow::mode_count; ++at)
+    choices.push_back({flow::mode_labels[at], std::string(flow::mode_helps[at]) + keys});
   auto mode = static_cast<std::size_t>(chosen.mode);
-  if (one_of(flow::mode_labels, mode, flow::mode_count))
-    chosen.mode = static_cast<flow::Mode>(mode);
-  show_help("next mode", flow::modes_help);
+  one_of(choices, mode, flow::mode_count);
+  chosen.mode = static_cast<flow::Mode>(mode);
 }
 
 void SettingControls::draw(flow::LoopSettings& chosen) {

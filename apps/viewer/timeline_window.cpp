@@ -71,9 +71,11 @@ struct TimelineWindow::Panel {
                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
     ImGui::PushTextWrapPos(panel_width - em(0.8F));
     file(view, actions);
-    if (section("Key", true)) key(view, actions);
-    if (!view.functions.empty() && section("Functions", true)) functions(view);
-    retiming_shown = section("Timeline", false);
+    if (section("Key", "The selected key.", true)) key(view, actions);
+    if (!view.functions.empty() &&
+        section("Functions", "What each function of the puppet is at the play head.", true))
+      functions(view);
+    retiming_shown = section("Timeline", "Changes of the whole timeline.", false);
     if (retiming_shown) whole(view, actions);
     if (!view.message.empty()) {
       ImGui::Separator();
@@ -146,8 +148,7 @@ private:
       actions.tried = KeyBlend{static_cast<double>(std::clamp(blend, 0.0F, 1.0F))};
     }
     ImGui::EndDisabled();
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("with its neighbours: what would be without it is 1");
+    show_text("With its neighbours: what would be without it is 1.");
     if (blends && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
       actions.keep = true;
       blends = false;

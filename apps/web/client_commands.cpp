@@ -14,20 +14,6 @@ namespace nendo::web {
 
 namespace {
 
-/// One length for all fingers, or five with commas between.
-std::optional<std::array<double, 5>> lengths_in(std::string_view text) noexcept {
-  std::array<double, 5> lengths{};
-  const bool one_for_all = text.find(',') == std::string_view::npos;
-  std::string_view rest = text;
-  for (double& length : lengths) {
-    const auto number = to_finite_number(one_for_all ? text : cut(rest, ','));
-    if (!number) return std::nullopt;
-    length = *number;
-  }
-  if (!one_for_all && (!rest.empty() || text.ends_with(','))) return std::nullopt;
-  return lengths;
-}
-
 /// Returns whether the text is `yes` and not `no`; nothing if it is neither.
 std::optional<bool> truth_in(std::string_view text, std::string_view yes,
                              std::string_view no) noexcept {
@@ -35,59 +21,19 @@ std::optional<bool> truth_in(std::string_view text, std::string_view yes,
   return std::nullopt;
 }
 
-/// Reads the value of a setting by its kind. Returns what can be used if the text is no such value;
-/// empty: it was read. Ranges are checked later, because the description knows them.
-struct ValueReader {
-  std::string_view text;
-  flow::LoopSettings& settings;
-
-  template <class T>
-  std::string operator()(const flow::ChoiceSetting<T>& choice) const {
-    return put(choice.named(text), choice.of(settings), choice.choices);
-  }
-  std::string operator()(const flow::SwitchSetting& on) const {
-    return put(truth_in(text, "true", "false"), on.of(settings), "true or false");
-  }
-  std::string operator()(const flow::NumberSetting& number) const {
-    return put(to_finite_number(text), number.of(settings), "a number");
-  }
-  std::string operator()(const flow::FingersSetting& fingers) const {
-    return put(lengths_in(text), fingers.of(settings),
-               "metres, or five numbers with commas between");
-  }
-  std::string operator()(const flow::BrushesSetting& brushes) const {
-    const auto parsed = flow::parse_brushes(text);
-    if (!parsed) return deform::brush_words() + ", or five with commas between";
-    brushes.of(settings) = *parsed;
-    return {};
-  }
-
-private:
-  template <class T>
-  static std::string put(const std::optional<T>& value, T& place, std::string_view usable) {
-    if (!value) return std::string(usable);
-    place = *value;
-    return {};
-  }
-};
-
 /// Takes the value of one setting. Returns why it is refused; empty: it was taken.
 std::string take(std::string_view name, std::string_view value, NamedSettings& named) {
-  std::string why;
-  bool is_known = false;
-  std::uint32_t bit = 1;
+  std::uint32_t own = 0, bit = 1;
   flow::for_each_setting([&](const auto& setting) {
-    const std::uint32_t own = std::exchange(bit, bit << 1U);
-    if (setting.name != name) return;
-    is_known = true;
-    if ((named.named & own) != 0)
-      why = std::string(name) + " is there twice; name each setting once";
-    else if (const auto usable = ValueReader{value, named.values}(setting); !usable.empty())
-      why = std::string(name) + ": use " + usable;
-    named.named |= own;
+    if (setting.name == name) own = bit;
+    bit <<= 1U;
   });
-  if (is_known) return why;
-  return "there is no setting " + in_quotes(name) + "; message 4 names all settings";
+  if (own == 0) return "there is no setting " + in_quotes(name) + "; message 4 names all settings";
+  if ((named.named & own) != 0)
+    return std::string(name) + " is there twice; name each setting once";
+  named.named |= own;
+  const auto set = flow::set_from_text(named.values, name, value);
+  return set ? std::string() : set.error().message;
 }
 
 /// Reads as many items, and returns whether all of them are finite numbers.

@@ -176,8 +176,9 @@ TEST_SUITE("c") {
     CHECK(nendo_loop_change(loop, "brushes", "push") == NENDO_OK);
     check_refused(nendo_loop_change(loop, "mode", "type3"), NENDO_USAGE, "mode: use type1");
     check_refused(nendo_loop_change(loop, "radius_m", "-1"), NENDO_BAD_INPUT, "radius");
-    check_refused(nendo_loop_change(loop, "radius_m", "wide"), NENDO_USAGE, "a number");
-    check_refused(nendo_loop_change(loop, "colour", "red"), NENDO_USAGE, "there are mode, kernel");
+    check_refused(nendo_loop_change(loop, "radius_m", "wide"), NENDO_USAGE,
+                  "use metres, or five numbers");
+    check_refused(nendo_loop_change(loop, "colour", "red"), NENDO_USAGE, "use mode, kernel");
     check_refused(nendo_loop_change(loop, nullptr, "x"), NENDO_USAGE, "setting: is null");
     check_refused(nendo_loop_ask(loop, 7), NENDO_USAGE, "request");
     check_refused(nendo_loop_ask(loop, -1), NENDO_USAGE, "request");

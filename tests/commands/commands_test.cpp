@@ -35,6 +35,8 @@ struct State {
 
   explicit State(bool all) : facts{all, all, all, all} {
     frame.settings.radius_m.fill(0.1);
+    frame.settings.mode = all ? flow::Mode::type2 : flow::Mode::type1;
+    if (all) frame.settings.brushes.fill(deform::Brush::twist);
     frame.undo_steps = frame.redo_steps = all ? 1 : 0;
     frame.held = frame.symmetric = all;
     frame.function_count = all ? 3 : 0;
@@ -210,7 +212,7 @@ TEST_SUITE("commands") {
       flow::PendingSettings pending;
       pending.follow(frame.settings);
       const auto answer =
-          commands::press(*commands::with_key("F", commands::in_terminal), {frame, facts}, pending);
+          commands::press(*commands::with_key("A", commands::in_terminal), {frame, facts}, pending);
       REQUIRE(answer.command);
       const auto* const change = std::get_if<flow::ChangeSettings>(&*answer.command);
       REQUIRE(change != nullptr);
@@ -225,7 +227,10 @@ TEST_SUITE("commands") {
     int refused = 0;
     for (const Row& row : commands::table()) {
       CAPTURE(row.name);
-      CHECK(row.refusal_in(State(true).now()) == nullptr);
+      State all(true);
+      if (row.name == "set strength") all.frame.function_count = 0; // a puppet has no brushes
+      CHECK(row.refusal_in(all.now()) == nullptr);
+      if (const char* const refusal = row.refusal_in(none.now())) CHECK(is_sentence(refusal));
       if (!row.is_for_run()) continue;
       const auto answer = press(row, none);
       const bool is_request =
@@ -233,7 +238,6 @@ TEST_SUITE("commands") {
       CHECK(answer.command.has_value() == (answer.refusal == nullptr || is_request));
       if (answer.refusal == nullptr) continue;
       ++refused;
-      CHECK(is_sentence(answer.refusal));
     }
     CHECK(refused == 11);
   }

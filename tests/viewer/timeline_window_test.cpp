@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 #include <doctest/doctest.h>
 
+#include "support/control_laws.hpp"
 #include "support/flow_fixtures.hpp"
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
@@ -135,17 +136,7 @@ TEST_SUITE("timeline_window") {
       REQUIRE(pressed.select);
       CHECK(*pressed.select == StripKey{1, 2});
       seat.release();
-      const auto shown = controls();
-      CHECK(shown.size() > 12);
-      for (std::size_t at = 0; at < shown.size(); ++at) {
-        CAPTURE(shown[at].name);
-        CHECK_FALSE(shown[at].is_cut);
-        for (std::size_t other = 0; other < at; ++other) {
-          const Eigen::Vector2f overlap =
-              shown[at].max.cwiseMin(shown[other].max) - shown[at].min.cwiseMax(shown[other].min);
-          CHECK_MESSAGE(overlap.minCoeff() <= 0.0F, shown[other].name);
-        }
-      }
+      test::check_controls();
     }
   }
 

@@ -5,11 +5,15 @@
 #include <GLFW/glfw3.h>
 #include <doctest/doctest.h>
 
+#include "support/control_laws.hpp"
 #include "support/flow_fixtures.hpp"
 #include "support/memory_screen.hpp"
 #include "support/restraint.hpp"
 #include "viewer/control_list.hpp"
 #include "viewer/live_window.hpp"
+#include "viewer/pointing.hpp"
+#include "viewer/puppet_editor.hpp"
+#include "viewer/setting_pictures.hpp"
 
 namespace window_panel_test {
 
@@ -62,6 +66,22 @@ struct Person {
     const Commands more = window->show(frame, false, gauges);
     commands.insert(commands.end(), more.begin(), more.end());
     return commands;
+  }
+  /// Shows one picture with this input, which stays.
+  Commands hold(SimulatedInput& input) {
+    window->scene_window().simulate(input);
+    Commands commands = window->show(frame, false, gauges);
+    input.taps.clear();
+    input.text.clear();
+    window->scene_window().simulate(input);
+    const Commands more = window->show(frame, false, gauges);
+    commands.insert(commands.end(), more.begin(), more.end());
+    return commands;
+  }
+  void set(const flow::LoopSettings& settings) {
+    frame.settings = settings;
+    window->show(frame, true, gauges);
+    window->show(frame, false, gauges);
   }
   Commands type(int key, bool control = false, bool shift = false) {
     SimulatedInput input;
@@ -276,17 +296,7 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
         person.frame.settings.radius_m.fill(0.1);
         person.window->show(person.frame, true, person.gauges);
         person.window->show(person.frame, false, person.gauges);
-        const auto shown = controls();
-        CHECK(shown.size() > 15);
-        for (std::size_t at = 0; at < shown.size(); ++at) {
-          CAPTURE(shown[at].name);
-          CHECK_FALSE(shown[at].is_cut);
-          for (std::size_t other = 0; other < at; ++other) {
-            const auto overlap =
-                shown[at].max.cwiseMin(shown[other].max) - shown[at].min.cwiseMax(shown[other].min);
-            CHECK_MESSAGE(overlap.minCoeff() <= 0.0F, shown[other].name);
-          }
-        }
+        test::check_controls();
       }
     }
   }
@@ -300,18 +310,190 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
       person.window->show(person.frame, true, person.gauges);
       person.window->show(person.frame, false, person.gauges);
       std::vector<std::string> names;
-      for (const std::string name : {"radius", "kernel", "brush", "whole hand", "never folds",
+      for (const std::string name : {"radius", "c2", "inflate", "whole hand", "never folds",
                                      "volume", "closed pinches", "smooth hands"})
         if (control_named(name) != nullptr) names.push_back(name);
       return names;
     };
     using Names = std::vector<std::string>;
-    CHECK(names_in(flow::Mode::type1) == Names{"radius", "kernel", "whole hand", "never folds",
+    CHECK(names_in(flow::Mode::type1) == Names{"radius", "c2", "whole hand", "never folds",
                                                "volume", "closed pinches", "smooth hands"});
-    CHECK(names_in(flow::Mode::type2) == Names{"radius", "kernel", "brush", "never folds", "volume",
+    CHECK(names_in(flow::Mode::type2) == Names{"radius", "c2", "inflate", "never folds", "volume",
                                                "closed pinches", "smooth hands"});
     CHECK(names_in(flow::Mode::clay) == Names{"smooth hands"});
     CHECK(names_in(flow::Mode::parts) == Names{"closed pinches", "smooth hands"});
+  }
+
+  TEST_CASE("each control says what it is for when the pointer is over it, also a grey one") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Person person({{900, 1600}, Theme::light, 1.0F});
+    for (const std::string section : {"Model", "View", "Gloves", "Timing"}) {
+      person.press(section);
+      person.set(person.frame.settings); // the panel grows
+    }
+    flow::LoopSettings settings = person.frame.settings;
+    settings.brushes.fill(deform::Brush::inflate); // and so a strength
+    for (const flow::Mode mode :
+         {flow::Mode::type1, flow::Mode::type2, flow::Mode::clay, flow::Mode::parts}) {
+      settings.mode = mode;
+      person.set(settings);
+      const std::vector<Control> all(controls().begin(), controls().end());
+      CHECK(all.size() > 30);
+      for (const Control& control : all) {
+        CAPTURE(control.name);
+        const Eigen::Vector2f middle = (control.min + control.max) / 2.0F;
+        SimulatedInput input;
+        input.pointer = middle.cast<double>();
+        person.hold(input);
+        CHECK(tooltip().size() > 10);
+        if (control.name == "Undo")
+          CHECK(tooltip().find("There is nothing to undo.") != std::string::npos);
+        if (control.name == "radius") {
+          CHECK(tooltip().find("1 to 40 cm") != std::string::npos);
+          for (const char* keys : {"[: smaller", "]: larger", "f: set radius"})
+            CHECK(tooltip().find(keys) != std::string::npos);
+        }
+      }
+    }
+  }
+
+  TEST_CASE("f sets the radii by the pointer's way: a circle on the model, and one change") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Person person;
+    person.window->editor().begin(person.test.model, "ball.obj", nullptr);
+    flow::LoopSettings settings = person.frame.settings;
+    settings.radius_m = {0.1, 0.1, 0.1, 0.1, 0.05};
+    person.set(settings);
+    const Camera camera = person.window->scene_window().stage_camera();
+    const Size seen = person.window->scene_window().scene_size();
+    const Vector3d place = camera.eye().normalized() / person.frame.units_per_metre;
+    const Eigen::Vector2d middle = *pixel_of(camera, place, seen);
+    const auto seen_px = [&](double radius_m) {
+      const Vector3d aside = radius_m * camera.axes().row(0).transpose();
+      return (*pixel_of(camera, place + aside, seen) - middle).norm();
+    };
+    SimulatedInput input;
+    const auto begin = [&](bool of_strength) {
+      input = {};
+      input.pointer = middle;
+      input.taps = {GLFW_KEY_F};
+      input.shift = of_strength;
+      CHECK(person.hold(input).empty());
+      input.shift = false;
+    };
+    const auto is_off = [&] { return person.window->message().empty(); };
+    begin(false);
+    CHECK(person.window->message().starts_with("radius 10.0 cm: "));
+    for (int step = 0; step < 20; ++step) { // as many pictures, and no change of the loop
+      input.pointer.x() += 3.0;
+      CHECK(person.hold(input).empty());
+    }
+    input.buttons[0] = true;
+    const Commands asked = person.hold(input);
+    input.buttons[0] = false;
+    REQUIRE(asked.size() == 1);
+    REQUIRE(std::holds_alternative<flow::ChangeSettings>(asked[0]));
+    const flow::LoopSettings chosen = std::get<flow::ChangeSettings>(asked[0]).settings;
+    CHECK(std::abs(seen_px(chosen.radius_m[0]) - seen_px(0.1) - 60.0) < seen_px(0.0011));
+    CHECK(chosen.radius_m[4] == doctest::Approx(chosen.radius_m[0] / 2.0));
+    CHECK(is_off());
+    CHECK(person.hold(input).empty());
+    person.set(chosen);
+
+    for (const bool by_mouse : {true, false}) { // the old value returns
+      begin(false);
+      input.pointer = {60.0, 400.0}; // over the panel
+      CHECK(person.hold(input).empty());
+      CHECK(person.window->message().starts_with("radius 1.0 cm: "));
+      input.buttons[1] = by_mouse;
+      if (!by_mouse) input.taps = {GLFW_KEY_ESCAPE};
+      CHECK(person.hold(input).empty());
+      input.buttons[1] = false;
+      CHECK(person.hold(input).empty());
+      CHECK(is_off());
+      CHECK(person.window->settings() == chosen);
+    }
+
+    begin(false);
+    input.text = U"g1x2,5"; // what is no number is not taken
+    CHECK(person.hold(input).empty());
+    input.taps = {GLFW_KEY_ENTER};
+    CHECK(person.hold(input).size() == 1);
+    CHECK(person.window->settings().radius_m[0] == doctest::Approx(0.125));
+    CHECK(person.window->settings().radius_m[4] == doctest::Approx(0.0625));
+
+    begin(true);
+    CHECK(person.window->message() == commands::no_strength);
+  }
+
+  TEST_CASE("F sets the strength of brushes, and modes without radii or strengths refuse") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Person person;
+    flow::LoopSettings settings = person.frame.settings;
+    settings.mode = flow::Mode::clay;
+    person.set(settings);
+    person.type(GLFW_KEY_F);
+    CHECK(person.window->message() == commands::no_radius);
+    settings.mode = flow::Mode::type2;
+    settings.brushes.fill(deform::Brush::push);
+    settings.brush_strength = 0.5;
+    person.set(settings);
+    SimulatedInput input;
+    input.pointer = {500.0, 300.0};
+    for (const auto& [typed, strength] : {std::pair{U"-0.25", -0.25}, {U"7", 1.0}, {U"", 1.0}}) {
+      input.taps = {GLFW_KEY_F};
+      input.shift = true;
+      CHECK(person.hold(input).empty());
+      CHECK(person.window->message().starts_with("strength "));
+      input.shift = false;
+      input.text = typed;
+      CHECK(person.hold(input).empty());
+      input.taps = {GLFW_KEY_ENTER};
+      const bool is_same = typed[0] == 0; // and not asked for again
+      CHECK(person.hold(input).size() == (is_same ? 0 : 1));
+      CHECK(person.window->settings().brush_strength == doctest::Approx(strength));
+      person.set(person.window->settings());
+    }
+  }
+
+  TEST_CASE("the pictures of brushes are what brushes do") {
+    struct Extent {
+      double low = 0.0, high = 0.0, spread = 0.0;
+    };
+    const auto extent = [](deform::Brush brush) {
+      Extent found;
+      for (const auto& line : lines_of(brush))
+        for (const Vector3d& at : line) {
+          found.low = std::min(found.low, at.z());
+          found.high = std::max(found.high, at.z());
+          found.spread += at.head<2>().norm();
+        }
+      return found;
+    };
+    const Extent plain = extent(deform::Brush::none);
+    CHECK(plain.high - plain.low == 0.0);
+    CHECK(extent(deform::Brush::pull).high == doctest::Approx(0.6));
+    CHECK(extent(deform::Brush::inflate).high > 0.3);
+    CHECK(extent(deform::Brush::inflate).low > -0.05);
+    CHECK(extent(deform::Brush::push).low < -0.3);
+    CHECK(extent(deform::Brush::push).high < 0.05);
+    CHECK(extent(deform::Brush::pinch).spread < 0.98 * plain.spread);
+    CHECK(extent(deform::Brush::scale).spread > 1.02 * plain.spread);
+    CHECK(std::abs(extent(deform::Brush::twist).spread / plain.spread - 1.0) < 0.02);
+    for (const auto brush : {deform::Brush::smooth, deform::Brush::flatten}) { // and not far away
+      const auto& row = lines_of(brush)[2];
+      const auto height = [&](std::size_t from) {
+        const auto [low, high] =
+            std::minmax_element(row.begin() + static_cast<std::ptrdiff_t>(from),
+                                row.begin() + static_cast<std::ptrdiff_t>(from + 9),
+                                [](const auto& a, const auto& b) { return a.z() < b.z(); });
+        return high->z() - low->z();
+      };
+      CHECK(height(20) < 0.6 * height(0));
+    }
   }
 
   TEST_CASE("hints are beside the panel, and go for good with their button") {

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include <nendo/base/text.hpp>
 #include <nendo/flow/finger_supports.hpp>
 #include <nendo/puppet/rig.hpp>
 
@@ -22,6 +23,53 @@ bool is_in_range(const FingersSetting& fingers, const LoopSettings& settings) no
   return std::all_of(lengths.begin(), lengths.end(),
                      [&](double length) { return fingers.range.has(length); });
 }
+
+/// Reads the value of a setting by its kind. Returns what can be used if the text is no such value;
+/// empty: it was read.
+struct ValueReader {
+  std::string_view text;
+  LoopSettings& settings;
+
+  template <class T>
+  std::string operator()(const ChoiceSetting<T>& choice) const {
+    const auto named = choice.named(text);
+    if (!named) return choice.choices();
+    choice.of(settings) = *named;
+    return {};
+  }
+  std::string operator()(const SwitchSetting& on) const {
+    if (text != "true" && text != "false") return "true or false";
+    on.of(settings) = text == "true";
+    return {};
+  }
+  std::string operator()(const NumberSetting& number) const {
+    const auto read = to_finite_number(text);
+    if (!read) return "a number";
+    number.of(settings) = *read;
+    return {};
+  }
+  std::string operator()(const FingersSetting& fingers) const {
+    const bool one_for_all = text.find(',') == std::string_view::npos;
+    ItemReader items(text, ',');
+    std::array<double, 5> lengths{};
+    for (double& length : lengths) {
+      const auto read = to_finite_number(one_for_all ? text : items.next());
+      if (!read) return several;
+      length = *read;
+    }
+    if (!one_for_all && !items.has_ended()) return several;
+    fingers.of(settings) = lengths;
+    return {};
+  }
+  std::string operator()(const BrushesSetting& brushes) const {
+    const auto parsed = parse_brushes(text);
+    if (!parsed) return deform::brush_words() + ", or five with commas between";
+    brushes.of(settings) = *parsed;
+    return {};
+  }
+
+  static constexpr const char* several = "metres, or five numbers with commas between";
+};
 
 std::string shortest_text(double number) {
   char text[32];
@@ -179,6 +227,20 @@ Result<void> check_ranges(const LoopSettings& settings) {
                      std::string(setting.name) + ": use " + in_words(setting.range, setting.unit)};
   });
   return fine;
+}
+
+Result<void> set_from_text(LoopSettings& settings, std::string_view name, std::string_view value) {
+  std::optional<std::string> usable;
+  std::vector<std::string_view> names;
+  for_each_setting([&](const auto& setting) {
+    names.push_back(setting.name);
+    if (setting.name == name) usable = ValueReader{value, settings}(setting);
+  });
+  const std::string shown = printable(name);
+  if (!usable)
+    return Error{Errc::bad_input, shown + ": no such setting; use " + alternatives(names)};
+  if (!usable->empty()) return Error{Errc::bad_input, shown + ": use " + *usable};
+  return {};
 }
 
 std::string in_words(const LoopSettings& settings, double units_per_metre) {

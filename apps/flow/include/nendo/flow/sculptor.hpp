@@ -28,8 +28,6 @@ namespace nendo::flow {
 /// of the model and move them.
 enum class Mode : std::uint8_t { type1, type2, clay, parts };
 inline constexpr std::uint8_t mode_count = 4;
-inline constexpr std::string_view mode_names =
-    "type1, type2, clay or parts"; ///< all modes, for messages
 
 /// Returns whether whole hands shape in this mode. In other modes control points do, also a
 /// puppet's.

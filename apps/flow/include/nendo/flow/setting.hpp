@@ -9,7 +9,9 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
+#include <nendo/base/figures.hpp>
 #include <nendo/base/result.hpp>
 #include <nendo/deform/brush.hpp>
 #include <nendo/flow/loop_settings.hpp>
@@ -30,9 +32,21 @@ inline constexpr std::uint8_t in_all_modes = (1U << mode_count) - 1U;
 /// The modes in windows and on the page, in their order, and what they are.
 inline constexpr std::array<std::string_view, mode_count> mode_labels{"Pull", "Strokes", "Clay",
                                                                       "Parts"};
-inline constexpr std::string_view modes_help =
-    "Pull: the surface follows the fingertips from rest. Strokes: it follows their paths. Clay: "
-    "whole hands press it. Parts: a hand that closes takes the part under it.";
+inline constexpr std::array<std::string_view, mode_count> mode_helps{
+    "Pull: the surface follows the fingertips from rest.",
+    "Strokes: the surface follows the paths of the fingertips, or brushes change it along them.",
+    "Clay: whole hands press the surface.", "Parts: a hand that closes takes the part under it."};
+/// What each brush does.
+inline constexpr std::array<std::string_view, deform::brush_count> brush_helps{
+    "Pull: the surface follows the fingertip.",
+    "None: the finger does not change the surface.",
+    "Push: the surface moves inwards; with volume, it bulges nearby.",
+    "Inflate: the surface swells outwards.",
+    "Smooth: bumps disappear, and the volume stays.",
+    "Flatten: the surface becomes a plane.",
+    "Twist: the surface turns about the fingertip.",
+    "Scale: the surface grows about the fingertip.",
+    "Pinch: the surface gathers under the fingertip."};
 inline constexpr std::uint8_t by_points = in_mode(Mode::type1) | in_mode(Mode::type2);
 
 /// The strings of a setting for messages, files and widgets, and where it works.
@@ -44,6 +58,7 @@ struct SettingText {
   std::string_view help;              ///< the option's help
   StepKind step = StepKind::settings; ///< the undo step of changing only this setting
   std::uint8_t modes = in_all_modes;  ///< the modes in which it has an effect, as bits of in_mode()
+  std::string_view tip{};             ///< the tooltip of its widget; empty: as `help`
 
   constexpr bool works_in(Mode mode) const noexcept { return (modes & in_mode(mode)) != 0; }
 };
@@ -91,12 +106,22 @@ struct FingersSetting : Setting<std::array<double, 5>> {
   std::string_view unit{};
   Range handy; ///< the range of keys and widgets
 };
-/// A choice among named values.
+/// A choice among named values, which are the numbers from 0.
 template <class T>
 struct ChoiceSetting : Setting<T> {
-  std::string_view choices; ///< all names for messages, in the order of their values
+  std::size_t count = 0; ///< the number of values
   std::string_view (*name_of)(T choice) noexcept = nullptr;
   std::optional<T> (*named)(std::string_view name) noexcept = nullptr;
+
+  /// Returns the names of all values, in their order.
+  std::vector<std::string_view> names() const {
+    std::vector<std::string_view> all;
+    for (std::size_t at = 0; at < count; ++at)
+      all.push_back(name_of(static_cast<T>(at)));
+    return all;
+  }
+  /// Returns the same for messages: "off, mild or strong".
+  std::string choices() const { return alternatives(names()); }
 };
 
 /// Returns "measured" or "closed".
@@ -114,10 +139,10 @@ inline constexpr ChoiceSetting<hand::FilterKind> filter{
       "off, or one-euro: smooths the joint angles, at rest more than in motion; the summary shows "
       "the "
       "delay",
-      StepKind::filter},
+      StepKind::filter, in_all_modes, "Smooths the joint angles, at rest more than in motion."},
      nullptr,
      &hand::FilterOptions::kind},
-    "off or one-euro",
+    2,
     hand::name_of,
     hand::filter_named};
 inline constexpr NumberSetting min_cutoff{
@@ -151,10 +176,11 @@ inline constexpr ChoiceSetting<bool> pinches{
     {{"pinches", "--pinches", "pinches", "closed pinches",
       "closed: pads of thumb and finger that are nearly together meet, but not in clay; or "
       "measured: they keep the measured distance, to the millimetre",
-      StepKind::filter, static_cast<std::uint8_t>(in_all_modes & ~in_mode(Mode::clay))},
+      StepKind::filter, static_cast<std::uint8_t>(in_all_modes & ~in_mode(Mode::clay)),
+      "Pads of thumb and finger that are nearly together meet."},
      nullptr,
      &hand::FilterOptions::close_pinches},
-    "measured or closed",
+    2,
     name_of_pinches,
     pinches_named};
 } // namespace setting
@@ -190,14 +216,15 @@ inline constexpr ChoiceSetting<Mode> mode{{{"mode", "--mode", "mode", "mode",
                                             "default: type1, or type2 with a brush",
                                             StepKind::mode},
                                            &LoopSettings::mode},
-                                          mode_names,
+                                          mode_count,
                                           name_of,
                                           mode_named};
 inline constexpr ChoiceSetting<deform::Wendland> kernel{
     {{"kernel", "--kernel", "kernel", "kernel",
-      "wendland-c0, wendland-c2, wendland-c4 or wendland-c6", StepKind::kernel, by_points},
+      "wendland-c0, wendland-c2, wendland-c4 or wendland-c6", StepKind::kernel, by_points,
+      "The kernel: how a fingertip's influence falls off to the radius, from pointed to smooth."},
      &LoopSettings::kernel},
-    "wendland-c0, wendland-c2, wendland-c4 or wendland-c6",
+    4,
     deform::name_of,
     deform::wendland_named};
 inline constexpr SwitchSetting injective{
@@ -211,7 +238,7 @@ inline constexpr FingersSetting radius{
       "Radius of a fingertip's influence, in the model's units, or with a unit on the stage, e.g. "
       "3cm; without it, 0.2 of the model's longest side; "
       "or five with commas between, thumb to little finger; 10+40:0.5 is a mix",
-      StepKind::radius, by_points},
+      StepKind::radius, by_points, "How far a fingertip's influence reaches."},
      &LoopSettings::radius_m},
     {1e-9, 1e9},
     "m",
@@ -225,7 +252,7 @@ inline constexpr BrushesSetting brushes{
      "The effect of a fingertip along its path, in type 2: pull, none, push, inflate, smooth, "
      "flatten, "
      "twist, scale or pinch; or five with commas between, thumb to little finger",
-     StepKind::brush, in_mode(Mode::type2)},
+     StepKind::brush, in_mode(Mode::type2), "What a fingertip does to the surface along its path."},
     &LoopSettings::brushes};
 inline constexpr NumberSetting brush_strength{
     {{"brush_strength", "--strength", "strength", "strength",
@@ -246,9 +273,10 @@ inline constexpr ChoiceSetting<Hold> hold{
     {{"hold", "--hold", "whole hand", "whole hand",
       "The points of a hand that hold the model in type 1: tips, or hand, 45 points of the whole "
       "hand",
-      StepKind::hold, in_mode(Mode::type1)},
+      StepKind::hold, in_mode(Mode::type1),
+      "Whole hands hold the model, by 45 points each, not only fingertips."},
      &LoopSettings::hold},
-    "tips or hand",
+    2,
     name_of,
     hold_named};
 
@@ -302,6 +330,11 @@ NENDO_API std::string in_words(const Range& range, std::string_view unit);
 /// Checks that all settings are within their ranges. Error: bad_input, naming the first one that is
 /// not, and its range: "keep_volume: use 0 to 1". Allocates.
 NENDO_API Result<void> check_ranges(const LoopSettings& settings);
+/// Changes the setting of this name. value: true or false, a number, or a name; for all fingers
+/// one, or five with commas between, thumb to little finger. Error: bad_input (no such setting, or
+/// not its value), which lists what there is. Ranges are for check_ranges(). Allocates.
+NENDO_API Result<void> set_from_text(LoopSettings& settings, std::string_view name,
+                                     std::string_view value);
 /// Returns the settings for messages: "type1, wendland-c2, never folds, radius 13.2 cm (0.248)".
 NENDO_API std::string in_words(const LoopSettings& settings, double units_per_metre);
 

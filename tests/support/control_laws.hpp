@@ -1,0 +1,27 @@
+#pragma once
+// What holds for the controls of every window.
+
+#include <cstddef>
+
+#include <doctest/doctest.h>
+
+#include "viewer/control_list.hpp"
+
+namespace nendo::test {
+
+/// Checks that no two controls of the current picture overlap, and that no text is cut.
+inline void check_controls() {
+  const auto shown = viewer::controls();
+  CHECK(shown.size() > 12);
+  for (std::size_t at = 0; at < shown.size(); ++at) {
+    CAPTURE(shown[at].name);
+    CHECK_FALSE(shown[at].is_cut);
+    for (std::size_t other = 0; other < at; ++other) {
+      const Eigen::Vector2f overlap =
+          shown[at].max.cwiseMin(shown[other].max) - shown[at].min.cwiseMax(shown[other].min);
+      CHECK_MESSAGE(overlap.minCoeff() <= 0.0F, shown[other].name);
+    }
+  }
+}
+
+} // namespace nendo::test
