@@ -368,6 +368,12 @@ std::string Command::first_given(const std::vector<std::string>& names) const {
   return {};
 }
 
+bool Command::has_arguments() const {
+  const auto options = app_->get_options();
+  return std::any_of(options.begin(), options.end(),
+                     [](const CLI::Option* option) { return option->count() > 0; });
+}
+
 void Command::free_short_help() {
   app_->set_help_flag("--help", "Print this help message and exit");
 }

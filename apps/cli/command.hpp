@@ -90,6 +90,8 @@ public:
   /// Returns the first of these options, each by one name, that was given; empty: none. For the
   /// function of on_chosen().
   std::string first_given(const std::vector<std::string>& names) const;
+  /// Returns whether any option or argument was given. For the same function.
+  bool has_arguments() const;
 
 private:
   enum class Unit : std::uint8_t { s, mm, us, hz };

@@ -1,6 +1,6 @@
 #pragma once
-// The commands of `nendo edit` that do not change a timeline: they make, show and play one, and
-// open the window. Each command prints, blocks and returns the exit code.
+// The commands of `nendo edit` that do not change a timeline: they make, show and play one. Each
+// command prints, blocks and returns the exit code.
 
 #include <optional>
 #include <string>
@@ -38,9 +38,6 @@ struct PlayOptions {
   bool json = false;
 };
 int play_timeline(const PlayOptions& options);
-
-/// Adds the command `nendo edit view`, which opens the window.
-void add_timeline_view(cli::Command& edit);
 
 // These parse the arguments of the commands. All errors are usage errors that name the option and
 // its possible values.

@@ -17,6 +17,7 @@ const char* const program_summary =
 
 void add_commands(cli::Command& program) {
   add_demo(program);
+  add_studio(program);
   add_run(program);
   add_view(program);
   add_serve(program);

@@ -38,8 +38,11 @@ void add_replay(cli::Command& program);
 void add_run(cli::Command& program);
 void add_serve(cli::Command& program);
 void add_stress(cli::Command& program);
+void add_studio(cli::Command& program); ///< `nendo studio`: a window that begins with a choice
 void add_udev(cli::Command& program);
 void add_view(cli::Command& program); ///< `nendo view`: the same as run in a window
+/// Adds the command view to `nendo edit`.
+void add_timeline_view(cli::Command& edit);
 /// Adds the command tracker to `nendo calibrate`.
 void add_calibrate_tracker(cli::Command& calibrate);
 /// Adds the commands import and export to `nendo calibration`.

@@ -280,7 +280,7 @@ void nendo::app::add_edit(cli::Command& program) {
       program.add_command("edit", "Key poses of a recorded run: make, change, play");
   command.require_command();
   add_reading(command, options);
-  edit::add_timeline_view(command);
+  add_timeline_view(command);
   add_key_edits(command, options);
   add_whole_edits(command, options);
 }

@@ -2,6 +2,7 @@
 // The arguments of `nendo run` and `nendo view`.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,12 @@
 #include "session/views.hpp"
 
 namespace nendo::app::run_command {
+
+/// What a window begins with.
+enum class Begin : std::uint8_t {
+  with_run,   ///< the run of the arguments
+  with_start, ///< the screen on which the user chooses
+};
 
 struct RunArguments {
   session::RunOptions run;
@@ -35,6 +42,8 @@ struct RunArguments {
   std::optional<std::uint32_t> refine_to;
   std::string out_puppet;
   bool force = false; ///< --out may be the model, and --out-puppet may exist
+  Begin begin = Begin::with_run;
+  std::shared_ptr<const RunArguments> usual{}; ///< the values without a command line
 };
 
 /// Checks them, completes `run`, and reads the puppet, the masks and the take that they name.

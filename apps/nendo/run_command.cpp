@@ -1,180 +1,26 @@
 // nendo run: shapes a model with gloves.
 
-#include <algorithm>
-#include <iostream>
+#include <functional>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
-
-#include <spdlog/fmt/fmt.h>
-
-#include <nendo/base/text.hpp>
-#include <nendo/deform/closed_manifold.hpp>
-#include <nendo/deform/mesh.hpp>
-#include <nendo/deform/repair.hpp>
-#include <nendo/deform/supports.hpp>
-#include <nendo/sculpting/kept_learning.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/output_place.hpp"
 #include "commands/commands.hpp"
 #include "nendo/commands.hpp"
-#include "nendo/model_output.hpp"
-#include "nendo/run_arguments.hpp"
-#include "session/run_and_report.hpp"
+#include "nendo/run_in_studio.hpp"
+#include "nendo/run_once.hpp"
+#include "session/run_publishing.hpp"
 #include "takes/model_files.hpp"
 
 namespace nendo::app::run_command {
 namespace {
 
-/// Up to this size, a tick of 64 links takes less than the period of 90 Hz.
-constexpr Eigen::Index max_injective_unasked = 100'000;
-
-/// The views that the options ask for.
-struct Views {
-  std::unique_ptr<session::Observer> window;
-  std::unique_ptr<session::BrowserView> browser;
-};
-
-Result<Views> open_views(const RunArguments& options) {
-  Views views;
-  if (options.view.window) {
-    auto window = session::open_live_view(options.view, options.run);
-    if (!window) return window.error();
-    views.window = *std::move(window);
-  }
-  if (!options.web.empty()) {
-    auto browser = session::open_browser_view(options.web, options.run.mesh);
-    if (!browser) return browser.error();
-    views.browser = *std::move(browser);
-  }
-  return views;
-}
-
-/// Warns if a fingertip that touches the model reaches all of it.
-void warn_about_radius(const deform::Mesh& model, const RunArguments& options) {
-  const deform::Box box = deform::box_of_faces(model);
-  const double size = (box.highest - box.lowest).maxCoeff();
-  const auto parsed = session::parse_radius(options.run.radius, size / options.run.model_size_m);
-  if (!parsed || !*parsed) return;
-  const deform::Supports& supports = **parsed;
-  double reach = supports.own.empty() ? 0.0 : supports.own.front().support.radius;
-  for (const auto& own : supports.own)
-    reach = std::min(reach, own.support.radius);
-  for (const auto& shared : supports.shared)
-    reach = std::max(reach, shared.radius);
-  deform::Points corners(3, 2); // no fingertip that touches the model is farther from all of it
-  corners << box.lowest, box.highest;
-  warn_about_reach("--radius " + options.run.radius, box, corners, deform::one_radius(reach));
-}
-
-/// Returns whether repairing closes the model, as advice. It is tried, so that the advice is true,
-/// unless that takes too long.
-std::string advice_to_close(const deform::Mesh& model) {
-  constexpr Eigen::Index max_tried = 100'000;
-  if (model.vertices.cols() > max_tried) return "`nendo repair IN --out OUT` may close it";
-  const auto repaired = deform::repair(model);
-  return repaired ? "`nendo repair IN --out OUT` closes it" : repaired.error().message;
-}
-
-/// Warns before the first tick if the model has no inside.
-void note_inside(const deform::Mesh& model, const session::RunOptions& options) {
-  const deform::ManifoldCheck closed = deform::check_closed_manifold(model);
-  // Clay also knows the volume of surfaces that touch in a point.
-  if (!closed && closed.fault != deform::ManifoldFault::pinched_vertex) {
-    if (options.loop.sculptor.mode == flow::Mode::clay)
-      cli::note(options.mesh + ": " + deform::describe(closed, model) +
-                ", so it has no inside, and its volume is not kept; " + advice_to_close(model));
-    return;
-  }
-  if (const std::size_t inwards = deform::count_inward_faces(model); inwards > 0)
-    cli::note(fmt::format("{}: {} of its {} faces look inwards, where inside and outside are "
-                          "exchanged; `nendo repair IN --out OUT` reverses them",
-                          options.mesh, inwards, model.face_count()));
-}
-
-/// Turns fold prevention on, or warns that a model of this size has none.
-void choose_injective(const deform::Mesh& model, RunArguments& options) {
-  if (options.not_injective || options.run.puppet || options.run.over) return;
-  if (options.asked.injective || model.vertices.cols() <= max_injective_unasked) {
-    options.run.loop.sculptor.deformer.injective.emplace();
-    return;
-  }
-  cli::note(fmt::format("{}: has more than {} vertices, so the surface can fold; --injective "
-                        "prevents folds, but ticks may be late",
-                        options.run.mesh, max_injective_unasked));
-}
-
-/// Stores what --adapt has learned about the hands of a --user, and reports it: on standard output,
-/// unless that has JSON.
-Result<void> keep_learned(const session::RunOptions& options,
-                          const std::vector<gloves::OpenHand>& hands,
-                          const flow::LoopStats& stats) {
-  const auto report = [&](const std::string& text) {
-    options.json ? cli::note(text) : static_cast<void>(std::cout << text << std::endl);
-  };
-  for (const gloves::OpenHand& hand : hands) {
-    const std::string& user = options.calibration.user_of(hand.first.side);
-    if (!hand.wearer.adapt || user.empty()) continue;
-    const std::size_t slot = flow::Placement::index_of(hand.side);
-    if (hand.wearer.ends) {
-      const auto slips = sculpting::keep_slips(hand.glove->info(), hand.wearer.ends->side, user,
-                                               stats.slips_counts[slot]);
-      if (!slips) return slips.error();
-      const std::string path = printable(slips->path.string());
-      report(
-          slips->is_changed
-              ? fmt::format("wrote {}: the slips of the sensors; the previous file is kept", path)
-              : fmt::format("{} hand: no sensor has slipped; {} is unchanged", name_of(hand.side),
-                            path));
-      continue;
-    }
-    const auto kept = sculpting::keep_ranges(hand.glove->info(), stats.range_sides[slot], user,
-                                             stats.ranges[slot]);
-    if (!kept) return kept.error();
-    if (kept->empty())
-      cli::note(fmt::format("{} hand: learned nothing, because no joint moved enough",
-                            name_of(hand.side)));
-    else
-      report(fmt::format("wrote {}: the learned ranges, for --user {}", printable(kept->string()),
-                         printable(user)));
-  }
-  return {};
-}
-
 int run(RunArguments& options) {
-  if (const auto fine = check(options); !fine) return cli::report(fine.error());
-  auto published = session::publish_to(options.publish);
-  if (!published) return cli::report(published.error());
-  auto model = read_model(options);
-  if (!model) return cli::report(model.error());
-  warn_about_radius(*model, options);
-  note_inside(*model, options.run);
-  choose_injective(*model, options);
-  cli::install_stop_signals();
-  session::RunOptions& wanted = options.run;
-  const flow::RealtimeProcess process(wanted.realtime);
-  const auto views = open_views(options);
-  if (!views) return cli::report(views.error());
-  EventCount event_count;
-  auto opened = session::open_hands(wanted, *model, event_count);
-  if (!opened) return cli::report(opened.error());
-  session::RunParticipants participants;
-  if (views->browser) {
-    participants.sinks.push_back(views->browser.get());
-    participants.observers.push_back(views->browser.get());
-  }
-  if (views->window) participants.observers.push_back(views->window.get());
-  const auto outcome = session::run_and_report(wanted, *opened, *std::move(model), *published,
-                                               std::move(participants), process.grants());
-  if (!outcome) return cli::report(outcome.error());
-  if (const auto kept = keep_learned(wanted, opened->hands, outcome->stats); !kept)
-    return cli::report(kept.error());
-  const bool recorded =
-      std::all_of(outcome->recordings.begin(), outcome->recordings.end(),
-                  [](const auto& of_loop) { return of_loop.recorded.has_value(); });
-  return recorded ? 0 : static_cast<int>(Errc::failed);
+  if (options.view.window) return run_in_studio(options, {});
+  const auto code = run_once(options);
+  return code ? *code : cli::report(code.error());
 }
 
 void add_shape_options(cli::Command& command, RunArguments& options) {
@@ -262,9 +108,11 @@ std::vector<std::string> decided_by_take() {
 }
 
 /// Makes the options of a command that runs.
-RunArguments& options_for(cli::Command& command) {
-  return command.on_chosen<RunArguments>([command](RunArguments& options) {
+RunArguments& options_for(cli::Command& command,
+                          const std::function<Begin(const cli::Command&)>& begin = {}) {
+  return command.on_chosen<RunArguments>([command, begin](RunArguments& options) {
     options.decided_by_take = command.first_given(decided_by_take());
+    if (begin) options.begin = begin(command);
     return run(options);
   });
 }
@@ -313,6 +161,7 @@ void add_run_options(cli::Command& command, RunArguments& options) {
                    "The window shows where hands touch clay, and how hard; key 0 switches it");
   command.add_option("--frames", options.view.frames,
                      "Number of the window's pictures after which the run ends; 0: no limit");
+  options.usual = std::make_shared<const RunArguments>(options); // before a command line is read
 }
 
 } // namespace
@@ -329,8 +178,23 @@ void nendo::app::add_run(cli::Command& program) {
 void nendo::app::add_view(cli::Command& program) {
   using namespace run_command;
   cli::Command command = program.add_command(
-      "view", "Runs as `nendo run`, in a window with the model, the hands and a panel");
-  RunArguments& options = options_for(command);
+      "view", "Runs as `nendo run`, in a window; without arguments, begins as `nendo studio`");
+  RunArguments& options = options_for(command, [](const cli::Command& given) {
+    return given.has_arguments() ? Begin::with_run : Begin::with_start;
+  });
+  options.view.window = true;
+  add_run_options(command, options);
+}
+
+void nendo::app::add_studio(cli::Command& program) {
+  using namespace run_command;
+  cli::Command command = program.add_command(
+      "studio", "A window from glove to sculpture: gloves, models and modes to choose from, "
+                "calibration, shaping, and the timeline");
+  RunArguments& options = options_for(command, [](const cli::Command& given) {
+    const bool is_chosen = !given.first_given({"--mesh", "--puppet", "--mode", "--over"}).empty();
+    return is_chosen ? Begin::with_run : Begin::with_start;
+  });
   options.view.window = true;
   add_run_options(command, options);
 }

@@ -172,7 +172,9 @@ void SceneBuilder::add_wire(const SceneFrame& scene_frame, Scene& scene) const {
 // In cells, for what light reaches it is known at its vertices.
 void SceneBuilder::add_ground(Scene& scene) const {
   Surface surface{{}, {}, {}, ground};
-  const double longest = std::clamp(size_m_.maxCoeff(), 0.1, 2.0);
+  constexpr double without_model_m = 0.5;
+  const double longest =
+      corners_.empty() ? without_model_m : std::clamp(size_m_.maxCoeff(), 0.1, 2.0);
   const auto half = static_cast<float>(ground_of_size * longest);
   surface.material.fade_m = half;
   const float cell = 2.0F * half / ground_cells;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "cli/model_files.hpp"
-#include "session/first_start.hpp"
+#include "session/kept_state.hpp"
 #include "viewer/live_window.hpp"
 #include "viewer/puppet_editor.hpp"
 
@@ -17,7 +17,7 @@ using namespace nendo::viewer;
 
 namespace {
 
-class LiveView final : public Observer {
+class LiveView final : public WindowView {
 public:
   LiveView(std::unique_ptr<LiveWindow> window, const ViewOptions& options, const RunOptions& run)
       : window_(std::move(window)), options_(options) {
@@ -48,9 +48,8 @@ public:
     }
     gauges_.facts = status.facts;
     gauges_.vertices = status.model.mesh.vertex_count();
-    if (std::exchange(model_, status.frame.model) != status.frame.model) {
-      window_->set_model(status.model.layout(),
-                         SceneBuilder(status.model.mesh, status.frame.units_per_metre));
+    if (model_ != status.frame.model) {
+      show_again(status);
       window_->editor().set_model(status.model.mesh);
     }
     window_->editor().follow(status.puppet, status.frame);
@@ -63,6 +62,12 @@ public:
     if (options_.frames > 0 && shown_ >= options_.frames) asks.emplace_back(flow::EndRun{});
   }
 
+  LiveWindow& window() noexcept override { return *window_; }
+  void show_again(const RunStatus& status) override {
+    model_ = status.frame.model;
+    window_->set_model(status.model.layout(),
+                       SceneBuilder(status.model.mesh, status.frame.units_per_metre));
+  }
   void report(const std::string& message) override { gauges_.report = message; }
   bool sets_pace() const noexcept override { return true; }
   bool stays_open() const noexcept override { return true; }
@@ -88,13 +93,20 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions& options,
-                                                 const RunOptions& run) {
-  WindowLook look;
-  if (options.theme == "dark") look.theme = Theme::dark;
-  auto window = LiveWindow::open("Nendo", look);
-  if (!window) return window.error();
-  return std::unique_ptr<Observer>(std::make_unique<LiveView>(*std::move(window), options, run));
+Result<std::unique_ptr<WindowView>> open_live_view(const ViewOptions& options,
+                                                   const RunOptions& run,
+                                                   std::shared_ptr<SceneWindow> window) {
+  std::unique_ptr<LiveWindow> live;
+  if (window) {
+    live = std::make_unique<LiveWindow>(std::move(window));
+  } else {
+    WindowLook look;
+    look.theme = theme_named(options.theme);
+    auto opened = LiveWindow::open("Nendo", look);
+    if (!opened) return opened.error();
+    live = *std::move(opened);
+  }
+  return std::unique_ptr<WindowView>(std::make_unique<LiveView>(std::move(live), options, run));
 }
 
 } // namespace nendo::session
@@ -103,7 +115,8 @@ Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions& options,
 
 namespace nendo::session {
 
-Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions&, const RunOptions&) {
+Result<std::unique_ptr<WindowView>> open_live_view(const ViewOptions&, const RunOptions&,
+                                                   std::shared_ptr<viewer::SceneWindow>) {
   return Error{Errc::failed, "this nendo was built without a window; install libglfw3-dev, "
                              "libimgui-dev and libgl-dev and build it again, use a "
                              "browser with `nendo run --web 8080`, or draw files with "

@@ -2,8 +2,10 @@
 // An observer watches a run from the main thread and may send commands: the keys, a window, a
 // browser.
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -25,12 +27,21 @@ struct RunStatus {
   commands::RunFacts facts{};
   /// The frame's puppet; null: none.
   const std::shared_ptr<const puppet::Rig>& puppet;
+  bool modified = false;       ///< the shape differs from the loaded and from the last saved one
+  std::string_view saved{};    ///< the file of the last saved shape; empty: none
+  std::uint32_t saves = 0;     ///< how often the shape was saved
+  std::string_view recorded{}; ///< the file of the last complete recording; empty: none
 
   commands::Situation situation() const noexcept { return {frame, facts}; }
 };
 
+/// Saves the shape into this file, also if it exists; later saves without a name go there too.
+struct SaveShapeAs {
+  std::string file; ///< .obj, .ply or .stl
+};
+
 /// An observer's request: a command, or a new puppet, not null, for the loop.
-using Ask = std::variant<flow::Command, std::shared_ptr<const puppet::Rig>>;
+using Ask = std::variant<flow::Command, std::shared_ptr<const puppet::Rig>, SaveShapeAs>;
 using Asks = std::vector<Ask>;
 
 /// All calls come from the main thread. No call may block for longer than 30 ms.
@@ -48,6 +59,9 @@ public:
   /// Returns whether the run continues after all gloves have ended (Glove::has_ended()), until the
   /// user ends it, as with a window.
   virtual bool stays_open() const noexcept { return false; }
+  /// Returns whether the user has decided about the shape, which the run then does not write at
+  /// its end.
+  virtual bool has_settled_shape() const noexcept { return false; }
   /// Called after the loop has ended and the shape is written. The run returns its error.
   virtual Result<void> end() { return {}; }
 };

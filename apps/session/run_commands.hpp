@@ -79,6 +79,7 @@ private:
 
   void dispatch(const flow::Command& command);
   void dispatch(const Rig& rig) { puppet_ = rig; } // only the newest counts
+  void dispatch(const SaveShapeAs& save) { saving_.add(save.file); }
   void execute(flow::Request request) { for_loop_.push(request); }
   void execute(const flow::Recentre& recentre) { for_loop_.push(recentre); }
   void execute(const flow::WristMove& move);

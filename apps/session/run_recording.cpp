@@ -199,7 +199,10 @@ void RunRecorder::end(const deform::Points& shape) {
 void RunRecorder::end_with(const recording::ShapeSum& shape) {
   if (!recorder_) return;
   const auto recorded = recorder_->end(shape);
-  if (recorded) outcomes_.back().recorded = *recorded; // otherwise the error was reported at once
+  if (recorded) { // otherwise the error was reported at once
+    outcomes_.back().recorded = *recorded;
+    if (!outcomes_.back().file.empty()) last_file_ = outcomes_.back().file;
+  }
   recorder_.reset();
 }
 

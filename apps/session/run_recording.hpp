@@ -84,6 +84,8 @@ public:
   /// Requests writing the recording in memory to a file. Does nothing without keeps_last_minute().
   /// Wait-free.
   void save_last_minute() noexcept;
+  /// Returns the file of the last complete recording; empty: none.
+  const std::string& last_file() const noexcept { return last_file_; }
   /// Returns one outcome for each recording.
   const std::vector<RecordingOutcome>& outcomes() const noexcept { return outcomes_; }
 
@@ -107,6 +109,7 @@ private:
   bool is_changing_ = false;
   bool next_to_file_ = false;
   int number_ = 1; ///< the number in the latest recording's name
+  std::string last_file_;
   std::vector<RecordingOutcome> outcomes_;
 };
 

@@ -45,6 +45,20 @@ void RunSaving::add(const flow::Command& command) noexcept {
   recording_ = recording_ || std::holds_alternative<flow::SaveRecording>(command);
 }
 
+void RunSaving::add(const std::string& file) {
+  chosen_ = file;
+  shape_ = true;
+}
+
+bool RunSaving::is_modified(const flow::Frame& frame) {
+  if (frame.ticks_run == 0) return false;
+  if (!clean_) clean_ = Version{frame.model, frame.shape};
+  if (clean_->model != frame.model) return true;
+  for (std::size_t block = 0; block < frame.shape.block_count(); ++block)
+    if (clean_->shape.stamp(block) != frame.shape.stamp(block)) return true;
+  return false;
+}
+
 std::string RunSaving::save(flow::DeformLoop& loop) {
   std::string report = std::exchange(shape_, false) ? save_shape(loop) : "";
   if (std::exchange(recording_, false)) report += (report.empty() ? "" : "; ") + save_recording();
@@ -84,12 +98,16 @@ std::string RunSaving::save_puppet(const flow::DeformLoop& loop) {
 }
 
 std::string RunSaving::save_shape(flow::DeformLoop& loop) {
-  const std::string file = cli::next_free_name(out_, saved_);
+  const std::string file = chosen_.empty() ? cli::next_free_name(out_, saved_) : chosen_;
   const flow::Frame& frame = loop.frames().front();
   deform::Mesh shape = loop.changes().model(frame.model)->mesh;
   loop.changes().layout(frame.model).unpack(frame.shape, shape.vertices);
   const auto written = deform::write_mesh(file, shape, {}, up_);
-  return written ? "saved as " + file : written.error().message;
+  if (!written) return written.error().message;
+  clean_ = Version{frame.model, frame.shape};
+  saved_file_ = file;
+  ++saves_;
+  return "saved as " + file;
 }
 
 } // namespace nendo::session

@@ -1,9 +1,12 @@
 #pragma once
 // Saves shapes, puppets and the recording in memory, during a run and at its end.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include <nendo/deform/mesh_file.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/flow/command.hpp>
 #include <nendo/flow/deform_loop.hpp>
 
@@ -27,6 +30,8 @@ public:
   /// Queues flow::SaveShape, flow::SaveRecording and flow::SavePuppet for save(). Ignores other
   /// commands.
   void add(const flow::Command& command) noexcept;
+  /// Queues the shape for save() into this file, and so for each later flow::SaveShape.
+  void add(const std::string& file);
   /// Returns whether a save is pending.
   bool is_due() const noexcept { return shape_ || recording_ || puppet_; }
   /// Returns whether a save is pending, and the last save() was long enough ago.
@@ -34,6 +39,13 @@ public:
   /// Saves all pending files, the shape from the newest frame. Blocks while it writes. Returns a
   /// message for the user with the results.
   std::string save(flow::DeformLoop& loop);
+
+  /// Returns whether the frame's shape differs from the first one that this has seen, and from the
+  /// saved one.
+  bool is_modified(const flow::Frame& frame);
+  /// Returns the file of the last saved shape; empty: none.
+  const std::string& saved() const noexcept { return saved_file_; }
+  std::uint32_t saves() const noexcept { return saves_; } ///< the number of saved shapes
 
 private:
   std::string save_shape(flow::DeformLoop& loop);
@@ -46,6 +58,14 @@ private:
   PuppetPlace out_puppet_;
   RunRecorder& recorder_;
   int saved_ = 0;
+  std::string chosen_;     ///< where the shape goes; empty: into the next free name
+  std::string saved_file_; ///< of the last saved shape
+  std::uint32_t saves_ = 0;
+  struct Version {
+    std::uint32_t model = 0;
+    deform::BlockShape shape;
+  };
+  std::optional<Version> clean_; ///< the shape that is on the disk
   bool shape_ = false;
   bool recording_ = false;
   bool puppet_ = false;

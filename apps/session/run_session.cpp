@@ -168,7 +168,7 @@ public:
     for (auto& [side, feedback] : feedback_)
       feedback.put_out();
     gloves::stop(hands_);
-    if (!options_.hands_only)
+    if (!options_.hands_only && !is_shape_settled())
       if (const auto written = write_shape(options_.out, model_, options_.reading.up_axis());
           !written)
         return written.error();
@@ -176,9 +176,12 @@ public:
     for (Observer* observer : observers_)
       if (const auto ended = observer->end(); !ended) return ended.error();
     const flow::SculptorOptions& sculptor = placed_.loop->changes().sculptor_options();
-    RunOutcome outcome{placed_.loop->stats(),  elapsed_s_,
-                       model_.vertices.cols(), deform::max_radius(sculptor.deformer.supports),
-                       options_.out,           std::move(grants_),
+    RunOutcome outcome{placed_.loop->stats(),
+                       elapsed_s_,
+                       model_.vertices.cols(),
+                       deform::max_radius(sculptor.deformer.supports),
+                       is_shape_settled() ? saving_.saved() : options_.out,
+                       std::move(grants_),
                        recorder_.outcomes()};
     outcome.sculptor = sculptor;
     outcome.units_per_metre = placed_.setup.placement.units_per_metre;
@@ -201,6 +204,11 @@ private:
       observer->report(message);
   }
 
+  bool is_shape_settled() const {
+    return std::any_of(observers_.begin(), observers_.end(),
+                       [](const Observer* observer) { return observer->has_settled_shape(); });
+  }
+
   commands::RunFacts facts() const {
     return {recorder_.is_to_file(), recorder_.is_recording(), recorder_.keeps_last_minute(),
             placed_.setup.live_layers() != 0};
@@ -215,8 +223,16 @@ private:
     commands_.follow_frame(frame);
     follow_stuck(frame);
     follow_wrists(frame);
-    const RunStatus status{frame,    model,   fresh,
-                           devices_, facts(), placed_.loop->changes().puppet(frame.puppet)};
+    const RunStatus status{frame,
+                           model,
+                           fresh,
+                           devices_,
+                           facts(),
+                           placed_.loop->changes().puppet(frame.puppet),
+                           saving_.is_modified(frame),
+                           saving_.saved(),
+                           saving_.saves(),
+                           recorder_.last_file()};
     asks_.clear();
     for (Observer* observer : observers_)
       observer->update(status, asks_);

@@ -47,6 +47,10 @@ public:
   void add(cli::Command& command, const flow::BrushesSetting& brushes);
   void add(cli::Command& command, const flow::NumberSetting& number);
   void add(cli::Command& command, const flow::SwitchSetting& on);
+  /// Does what the option of a choice does.
+  void choose(const flow::SettingText& choice, const std::string& value) {
+    values_[choice.name] = value;
+  }
   /// Adds the options of the hands' filter.
   void add_filter(cli::Command& command);
 

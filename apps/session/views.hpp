@@ -8,6 +8,11 @@
 #include "session/observer.hpp"
 #include "session/sink.hpp"
 
+namespace nendo::viewer {
+class LiveWindow;
+class SceneWindow;
+} // namespace nendo::viewer
+
 namespace nendo::session {
 
 struct ViewOptions {
@@ -18,9 +23,20 @@ struct ViewOptions {
   std::uint32_t frames = 0;   ///< pictures after which the run ends; 0: no limit
 };
 
-/// Opens the window. Main thread, also for all calls of the window. Errors: failed (no screen, no
-/// OpenGL, or built without the view); the message has a remedy.
-Result<std::unique_ptr<Observer>> open_live_view(const ViewOptions& options, const RunOptions& run);
+/// A run in a window.
+class WindowView : public Observer {
+public:
+  virtual viewer::LiveWindow& window() noexcept = 0;
+  /// Shows the run's model again, after something else was shown in the window.
+  virtual void show_again(const RunStatus& status) = 0;
+};
+
+/// Shows the run in `window`, or if that is null, opens one. Main thread, also for all calls of the
+/// window. Errors: failed (no screen, no OpenGL, or built without the view); the message has a
+/// remedy.
+Result<std::unique_ptr<WindowView>>
+open_live_view(const ViewOptions& options, const RunOptions& run,
+               std::shared_ptr<viewer::SceneWindow> window = nullptr);
 
 /// Receives every frame in the tick, and observes the run on the main thread.
 class BrowserView : public Sink, public Observer {};

@@ -20,5 +20,9 @@ std::span<const Control> controls() noexcept;
 void forget_controls() noexcept;
 /// Returns the tooltip of the current picture; empty: none.
 const std::string& tooltip() noexcept;
+/// Replaces the file that the environment variable NENDO_CONTROLS names, if there is one, by a line
+/// for each control: min x, min y, max x, max y, 1 or 0 for is_possible, and the name. By it a
+/// program that moves the mouse finds what to press. Main thread; blocks for the file.
+void write_controls();
 
 } // namespace nendo::viewer

@@ -1,9 +1,13 @@
 #include "viewer/controls.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <nendo/base/files.hpp>
 
 #include "viewer/theme.hpp"
 
@@ -79,6 +83,23 @@ void show_text(std::string_view text) {
   ImGui::TextUnformatted(text.data(), text.data() + text.size());
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
+}
+
+void write_controls() {
+  static const char* const file = std::getenv("NENDO_CONTROLS");
+  static std::string before;
+  if (file == nullptr) return;
+  std::string lines;
+  for (const Control& control : controls()) {
+    char numbers[96];
+    std::snprintf(numbers, sizeof numbers, "%.0f %.0f %.0f %.0f %d ",
+                  static_cast<double>(control.min.x()), static_cast<double>(control.min.y()),
+                  static_cast<double>(control.max.x()), static_cast<double>(control.max.y()),
+                  control.is_possible ? 1 : 0);
+    lines += numbers + control.name + '\n';
+  }
+  if (lines != before) static_cast<void>(replace_file(file, lines));
+  before = std::move(lines);
 }
 
 void note_control(std::string_view name, std::string_view text, float around) {
@@ -182,7 +203,9 @@ bool choice_field(std::string_view text, std::span<const std::string_view> names
   const bool is_open = ImGui::BeginCombo("##choice", now.c_str());
   if (is_open) {
     for (std::size_t at = 0; at < names.size(); ++at) {
-      if (!ImGui::Selectable(std::string(names[at]).c_str(), at == chosen)) continue;
+      const bool taken = ImGui::Selectable(std::string(names[at]).c_str(), at == chosen);
+      note_control("choice " + std::string(names[at]), names[at]);
+      if (!taken) continue;
       changed = at != chosen;
       chosen = at;
     }

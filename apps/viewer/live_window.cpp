@@ -10,10 +10,12 @@
 
 namespace nendo::viewer {
 
-LiveWindow::LiveWindow(std::unique_ptr<SceneWindow> window)
+LiveWindow::LiveWindow(std::shared_ptr<SceneWindow> window)
     : window_(std::move(window)), panel_(std::make_unique<Panel>()),
       editor_(std::make_unique<PuppetEditor>()), tool_(std::make_unique<PuppetTool>()),
-      marks_(std::make_unique<PuppetMarks>()) {}
+      marks_(std::make_unique<PuppetMarks>()) {
+  window_->parts().radii = false; // as on the page
+}
 
 LiveWindow::~LiveWindow() = default;
 
@@ -24,8 +26,7 @@ Result<std::unique_ptr<LiveWindow>> LiveWindow::open(const std::string& title,
       "on a box without a screen `nendo run --web 8080` shows the run in a browser, and `nendo "
       "picture` and `nendo run --picture` draw files");
   if (!window) return window.error();
-  (*window)->parts().radii = false; // as on the page
-  return std::unique_ptr<LiveWindow>(new LiveWindow(*std::move(window)));
+  return std::make_unique<LiveWindow>(*std::move(window));
 }
 
 void LiveWindow::begin(const deform::BlockLayout& layout, const render::SceneBuilder& builder,

@@ -39,6 +39,8 @@ class LiveWindow {
 public:
   /// Opens a window. Error: failed (no screen, no OpenGL 3.3); the message has an alternative.
   static Result<std::unique_ptr<LiveWindow>> open(const std::string& title, const WindowLook& look);
+  /// Draws into `window`, not null, which others may use between two pictures.
+  explicit LiveWindow(std::shared_ptr<SceneWindow> window);
   ~LiveWindow();
   LiveWindow(const LiveWindow&) = delete;
   LiveWindow& operator=(const LiveWindow&) = delete;
@@ -68,13 +70,12 @@ public:
 
 private:
   struct Panel;
-  explicit LiveWindow(std::unique_ptr<SceneWindow> window);
   bool edit_puppet();
   void show_model(const flow::Frame& frame);
   bool move_hand(const flow::Frame& frame, Commands& commands);
   void draw_panel(const flow::Frame& frame, const Gauges& gauges, Commands& commands);
 
-  std::unique_ptr<SceneWindow> window_;
+  std::shared_ptr<SceneWindow> window_;
   std::unique_ptr<Panel> panel_;
   std::unique_ptr<PuppetEditor> editor_;
   std::unique_ptr<PuppetTool> tool_;

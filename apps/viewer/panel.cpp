@@ -158,6 +158,7 @@ void LiveWindow::Panel::history(const flow::Frame& frame, Commands& commands) {
       ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
     const bool is_present = at == list.undoable;
     if (ImGui::Selectable(words, is_present)) go_to_step(list, at, commands);
+    note_control("step " + std::to_string(at), words);
     show_text("Undoes, or does again, all steps up to here.");
     if (is_present && std::exchange(history_shown, list.version) != list.version)
       ImGui::SetScrollHereY(0.5F);
@@ -236,15 +237,17 @@ void LiveWindow::Panel::sections(const flow::Frame& frame, const Gauges& gauges,
 void LiveWindow::Panel::draw(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
                              PuppetEditor& editor, Commands& commands) {
   const float gap = em(gap_em), width = em(width_em);
-  const float high = ImGui::GetIO().DisplaySize.y - status_bar_height() - 2.0F * gap;
-  ImGui::SetNextWindowPos(ImVec2(gap, gap));
+  const float top = gap + window.above_px();
+  const float high = ImGui::GetIO().DisplaySize.y - status_bar_height() - gap - top;
+  ImGui::SetNextWindowPos(ImVec2(gap, top));
   ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0.0F), ImVec2(width, std::max(em(3.0F), high)));
   if (std::exchange(fold_asked, false)) ImGui::SetNextWindowCollapsed(!folded);
   // Without navigation, or Tab, which begins to edit a puppet, would also begin to edit a number.
   const std::string title = gauges.model + "###panel";
-  const bool open = ImGui::Begin(title.c_str(), nullptr,
-                                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                                     ImGuiWindowFlags_NoNavInputs);
+  const bool open =
+      ImGui::Begin(title.c_str(), nullptr,
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                       ImGuiWindowFlags_NoNavInputs | ImGuiWindowFlags_NoFocusOnAppearing);
   folded = ImGui::IsWindowCollapsed();
   if (open) sections(frame, gauges, window, editor, commands);
   ImGui::End();
@@ -258,7 +261,7 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
                     : panel_->note.empty()  ? gauges.report
                                             : panel_->note;
   draw_status_bar(frame, gauges, panel_->message);
-  if (hints_ && draw_hints(panel_->covered_px())) hints_ = false;
+  if (hints_ && draw_hints(panel_->covered_px(), window_->above_px())) hints_ = false;
   if (const auto change = panel_->pending.ask()) commands.push_back(*change);
 }
 

@@ -53,11 +53,12 @@ public:
       const Tap tap = waiting_.front();
       if (tap.key == before) return; // tapped twice: it is seen to go up in between
       waiting_.pop_front();
-      if (is_key_down(tap.key)) continue; // it still is down, and ImGui sees that
-      beside_ = {tap.key, io.KeyCtrl, io.KeyShift};
-      put_key(tap.key, true);
+      // If it still is down, ImGui sees that, but its modifiers may be up already.
+      const bool is_down = is_key_down(tap.key);
+      beside_ = {is_down ? 0 : tap.key, io.KeyCtrl, io.KeyShift};
+      if (!is_down) put_key(tap.key, true);
       put_modifiers(tap.control, tap.shift);
-      last_ = tap.key;
+      last_ = beside_->key;
       return;
     }
   }
@@ -65,10 +66,12 @@ public:
   /// picture. The back end reports the pointer for each picture, so the pointer needs no reset.
   void reset_keyboard() {
     if (!beside_) return;
-    put_key(beside_->key, false);
+    if (beside_->key != 0) put_key(beside_->key, false);
     put_modifiers(beside_->control, beside_->shift);
     beside_.reset();
   }
+
+  std::vector<std::string> dropped; ///< files, since they were taken
 
 private:
   struct Tap {
@@ -152,6 +155,11 @@ void on_button(GLFWwindow* window, int, int action, int) {
   if (action == GLFW_PRESS) quick_of(window).click();
 }
 
+void on_drop(GLFWwindow* window, int count, const char** files) {
+  for (int at = 0; at < count; ++at)
+    quick_of(window).dropped.emplace_back(files[at]);
+}
+
 } // namespace
 
 SceneWindow::SceneWindow() : quick_(std::make_unique<QuickInput>()) {}
@@ -185,6 +193,7 @@ SceneWindow::open(const std::string& title, const WindowLook& look, const std::s
   ImGui::GetIO().IniFilename = nullptr; // leaves no file behind
   use_theme(look.theme, look.scale.value_or(scale_of(window->window_)));
   glfwSetWindowUserPointer(window->window_, window->quick_.get());
+  glfwSetDropCallback(window->window_, on_drop);
   if (!imgui_queues_events) { // ImGui's own callbacks call these
     glfwSetKeyCallback(window->window_, on_key);
     glfwSetMouseButtonCallback(window->window_, on_button);
@@ -212,13 +221,42 @@ void SceneWindow::set_model(const deform::BlockLayout& layout,
   builder_.emplace(builder);
   shown_.size = {};
   renderer_->set_model(layout, builder);
+  if (std::exchange(kept_framed_, std::nullopt)) framed_ = false;
+}
+
+void SceneWindow::clear_model() {
+  builder_.emplace(deform::Mesh{}, 1.0);
+  shown_.size = {};
+  renderer_->clear_model();
+  framed_ = false;
+}
+
+std::vector<std::string> SceneWindow::take_dropped() {
+  return std::exchange(quick_->dropped, {});
+}
+
+void SceneWindow::set_bar(std::function<void()> draw, float height_em) {
+  bar_ = std::move(draw);
+  bar_em_ = bar_ ? height_em : 0.0F;
+}
+
+float SceneWindow::above_px() const {
+  return em(bar_em_);
+}
+
+void SceneWindow::set_title(const std::string& title) {
+  glfwSetWindowTitle(window_, title.c_str());
 }
 
 void SceneWindow::begin_picture(const render::SceneFrame& scene_frame, bool is_whole) {
   begun_ = HostClock::now();
   glfwPollEvents();
+  if (!builder_) clear_model();
   builder_->build_beside(scene_frame, parts_, scene_);
-  if (!framed_) choose_camera({22.0, 10.0});
+  if (kept_framed_)
+    look_at(kept_framed_->points, kept_framed_->view);
+  else if (!framed_)
+    choose_camera({22.0, 10.0});
   camera_.centre = covered_part();
   framed_ = framed_ || is_whole;
   ImGui_ImplOpenGL3_NewFrame();
@@ -227,6 +265,7 @@ void SceneWindow::begin_picture(const render::SceneFrame& scene_frame, bool is_w
   quick_->put();
   forget_controls();
   ImGui::NewFrame();
+  if (bar_) bar_();
 }
 
 void SceneWindow::add(render::Surface surface) {
@@ -236,7 +275,7 @@ void SceneWindow::add(render::Surface surface) {
 
 // Of the window's width: what is covered at its left.
 double SceneWindow::covered_part() const noexcept {
-  constexpr double most = 0.4;
+  constexpr double most = 0.65;
   return std::clamp(1.0 * left_ / scene_size().width, 0.0, most);
 }
 
@@ -248,14 +287,26 @@ void SceneWindow::choose_camera(render::View view) {
   box.extend(Eigen::Vector3f(half.x(), 2.0F * half.y(), half.z()));
   for (int corner = 0; corner < 8; ++corner)
     points.push_back(box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)));
+  look_at(points, view);
+}
+
+void SceneWindow::look_at(std::span<const Eigen::Vector3f> points, render::View view) {
   const render::Size size = scene_size();
+  const auto above = static_cast<double>(above_px());
   const double free_width = (1.0 - covered_part()) * size.width;
-  camera_ = render::framing(points, view, free_width / size.height, 0.1);
+  const double free_height = std::max(1.0, size.height - above);
+  camera_ = render::framing(points, view, free_width / free_height, 0.1);
+  camera_.distance_m *= size.height / free_height;
+  camera_.pan(0.0, above / 2.0, size.height);
   camera_.centre = covered_part();
 }
 
 void SceneWindow::frame_all() {
   choose_camera(camera_.view);
+}
+
+void SceneWindow::frame(std::vector<Eigen::Vector3f> points, render::View view) {
+  kept_framed_ = Framed{std::move(points), view};
 }
 
 void SceneWindow::simulate(const SimulatedInput& input) {
@@ -293,12 +344,12 @@ void SceneWindow::move_camera() {
   const auto dy = static_cast<double>(io.MouseDelta.y);
   const bool shifts = ImGui::IsMouseDown(ImGuiMouseButton_Middle) ||
                       (ImGui::IsMouseDown(ImGuiMouseButton_Left) && io.KeyShift);
-  if (shifts) {
-    camera_.pan(dx, dy, scene_size().height);
-  } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    camera_.orbit(dx, dy);
-  }
+  const bool turns = !shifts && ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  if (shifts) camera_.pan(dx, dy, scene_size().height);
+  if (turns) camera_.orbit(dx, dy);
   if (io.MouseWheel != 0.0F) camera_.zoom(static_cast<double>(io.MouseWheel));
+  if (io.MouseWheel != 0.0F || ((shifts || turns) && (dx != 0.0 || dy != 0.0)))
+    kept_framed_.reset();
 }
 
 void SceneWindow::follow_part_keys() {
@@ -333,6 +384,7 @@ void SceneWindow::end_picture() {
   quick_->reset_keyboard();
   draw_all(!draws_itself_);
   glfwSwapBuffers(window_);
+  write_controls();
   std::this_thread::sleep_until(begun_ + min_period);
 }
 

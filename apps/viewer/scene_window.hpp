@@ -3,8 +3,10 @@
 // window systems require.
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +45,9 @@ public:
   SceneWindow& operator=(const SceneWindow&) = delete;
 
   void set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder);
+  /// Shows no model, as at the beginning, on a stage in metres whose floor is y = 0. Chooses the
+  /// camera anew.
+  void clear_model();
   void follow(const deform::BlockShape& shape) { renderer_->follow(shape); }
 
   /// Begins a picture: processes the input since the last one, and builds the scene except the
@@ -55,6 +60,9 @@ public:
   void move_camera();
   /// Moves the camera, without rotation, so that all of the model and the hands is visible.
   void frame_all();
+  /// Chooses a camera that looks from there at these points, metres of the scene, also when the
+  /// window's size changes, until the user moves it, or another model is set.
+  void frame(std::vector<Eigen::Vector3f> points, render::View view);
   /// Handles the keys h, b, v, d, 0 and W, which toggle parts of the scene, unless a text field or
   /// dialog is active.
   void follow_part_keys();
@@ -68,6 +76,14 @@ public:
 
   /// Returns whether the user has asked to close the window since the last call.
   bool take_close_request() noexcept;
+  /// Returns the files that were dropped on the window since the last call.
+  std::vector<std::string> take_dropped();
+  /// Calls `draw` in each picture before all other widgets, for a bar of `height_em` multiples of
+  /// the font's size at the top, and for dialogs. Without `draw` there is no bar.
+  void set_bar(std::function<void()> draw, float height_em);
+  /// Returns the height of the bar in pixels, which panels leave free.
+  float above_px() const;
+  void set_title(const std::string& title);
   /// Reserves pixels at the bottom of the window, where the scene is not drawn.
   void leave_below(int pixels) noexcept { below_ = pixels; }
   /// Sets the covered pixels at the left of the window. The scene extends under them, but is
@@ -104,6 +120,7 @@ private:
   SceneWindow();
   double covered_part() const noexcept;
   void choose_camera(render::View view);
+  void look_at(std::span<const Eigen::Vector3f> points, render::View view);
   void put_simulated() const;
   void draw_all(bool finest);
   void draw_scene(render::Size size, bool finest);
@@ -114,11 +131,18 @@ private:
   std::optional<render::SceneBuilder> builder_;
   std::optional<SimulatedInput> simulated_;
   std::unique_ptr<QuickInput> quick_;
+  std::function<void()> bar_;
+  float bar_em_ = 0.0F;
   render::SceneParts parts_;
   render::Scene scene_;
   render::Camera camera_;
   Shown shown_; ///< the inputs of the picture in target_; initially of zero size
   HostTime begun_{};
+  struct Framed {
+    std::vector<Eigen::Vector3f> points;
+    render::View view;
+  };
+  std::optional<Framed> kept_framed_; ///< the camera follows these
   int below_ = 0;
   int left_ = 0;
   bool framed_ = false;

@@ -75,7 +75,7 @@ void draw_status_bar(const flow::Frame& frame, const Gauges& gauges, const std::
   ImGui::Begin("status", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                   ImGuiWindowFlags_NoNav);
+                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
   if (!message.empty()) {
     ImGui::TextColored(warning(), "%s", message.c_str());
     note_control("message", message);

@@ -63,12 +63,13 @@ struct TimelineWindow::Panel {
   float blend = 0.0F;
   bool blends = false; ///< the mouse holds the slider
 
-  void draw(const TimelineView& view, EditActions& actions) {
+  void draw(const TimelineView& view, float above_px, EditActions& actions) {
     const float gap = em(gap_em), panel_width = em(width_em);
-    ImGui::SetNextWindowPos(ImVec2(gap, gap));
+    ImGui::SetNextWindowPos(ImVec2(gap, gap + above_px));
     ImGui::SetNextWindowSizeConstraints(ImVec2(panel_width, 0.0F), ImVec2(panel_width, 4096.0F));
     ImGui::Begin("Nendo: edit", nullptr,
-                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
+                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoFocusOnAppearing);
     ImGui::PushTextWrapPos(panel_width - em(0.8F));
     file(view, actions);
     if (section("Key", "The selected key.", true)) key(view, actions);
@@ -183,7 +184,7 @@ private:
   }
 };
 
-TimelineWindow::TimelineWindow(std::unique_ptr<SceneWindow> window)
+TimelineWindow::TimelineWindow(std::shared_ptr<SceneWindow> window)
     : window_(std::move(window)), panel_(std::make_unique<Panel>()) {}
 
 TimelineWindow::~TimelineWindow() = default;
@@ -192,7 +193,7 @@ Result<std::unique_ptr<TimelineWindow>>
 TimelineWindow::open(const std::string& title, const WindowLook& look, const std::string& instead) {
   auto window = SceneWindow::open(title, look, instead);
   if (!window) return window.error();
-  return std::unique_ptr<TimelineWindow>(new TimelineWindow(*std::move(window)));
+  return std::make_unique<TimelineWindow>(*std::move(window));
 }
 
 EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFrame& scene_frame) {
@@ -204,7 +205,7 @@ EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFr
   mark_tips(view, scene_frame);
   panel_->strip.draw(view, panel_->retiming_shown ? std::optional(panel_->retiming) : std::nullopt,
                      actions);
-  panel_->draw(view, actions);
+  panel_->draw(view, window_->above_px(), actions);
   panel_->keys(*window_, actions);
   panel_->leave(view, window_->take_close_request(), actions);
   window_->end_picture();

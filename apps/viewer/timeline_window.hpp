@@ -17,6 +17,8 @@ public:
   /// alternative without a window.
   static Result<std::unique_ptr<TimelineWindow>>
   open(const std::string& title, const WindowLook& look, const std::string& instead);
+  /// Draws into `window`, not null, which others may use between two pictures.
+  explicit TimelineWindow(std::shared_ptr<SceneWindow> window);
   ~TimelineWindow();
   TimelineWindow(const TimelineWindow&) = delete;
   TimelineWindow& operator=(const TimelineWindow&) = delete;
@@ -30,12 +32,11 @@ public:
 
 private:
   struct Panel;
-  explicit TimelineWindow(std::unique_ptr<SceneWindow> window);
   bool move_tip(const TimelineView& view, const render::SceneFrame& scene_frame,
                 EditActions& actions);
   void mark_tips(const TimelineView& view, const render::SceneFrame& scene_frame) const;
 
-  std::unique_ptr<SceneWindow> window_;
+  std::shared_ptr<SceneWindow> window_;
   std::unique_ptr<Panel> panel_;
 };
 

@@ -3,15 +3,15 @@
 
 #include <doctest/doctest.h>
 
-#include "session/first_start.hpp"
+#include "session/kept_state.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_files.hpp"
 
-namespace first_start_test {
+namespace kept_state_test {
 
 using namespace nendo;
 
-TEST_SUITE("first_start") {
+TEST_SUITE("kept_state") {
   TEST_CASE("hints are due until they were closed, and never without a place to keep that") {
     const test::TemporaryFolder folder;
     const char* const before = std::getenv("HOME");
@@ -42,4 +42,4 @@ TEST_SUITE("first_start") {
   }
 }
 
-} // namespace first_start_test
+} // namespace kept_state_test

@@ -1,0 +1,42 @@
+#pragma once
+// Editing a timeline in a window, picture by picture. Main thread.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <nendo/base/result.hpp>
+
+#include "edit/edit_session.hpp"
+#include "takes/timeline_frames.hpp"
+#include "viewer/timeline_window.hpp"
+
+namespace nendo::edit {
+
+class WindowEditing {
+public:
+  /// `frames` are those of the timeline, which is saved into `out`.
+  WindowEditing(std::shared_ptr<viewer::SceneWindow> window, takes::TimelineFrames& frames,
+                const std::string& out);
+
+  /// Draws one picture, and does what the user asks for. Error: the shapes cannot be made.
+  Result<void> show();
+  /// Shows the model again, after something else was shown in the window.
+  void show_again();
+  /// Returns whether the last picture was final: its shape is that of the play head.
+  bool is_settled() const noexcept { return is_settled_; }
+  EditSession& session() noexcept { return session_; }
+  const EditSession& session() const noexcept { return session_; }
+
+private:
+  std::shared_ptr<viewer::SceneWindow> window_;
+  viewer::TimelineWindow timeline_window_;
+  EditSession session_;
+  deform::Mesh first_model_;
+  deform::BlockLayout first_layout_;
+  std::shared_ptr<const flow::ModelVersion> model_; ///< that the window has; null: the first one
+  std::optional<HostTime> before_;
+  bool is_settled_ = false;
+};
+
+} // namespace nendo::edit

@@ -1,0 +1,85 @@
+#pragma once
+// The gloves and trackers of the start screen: those that were named or that the machine has, each
+// glove read live. Main thread, except for what is noted otherwise.
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <nendo/driver/devices.hpp>
+#include <nendo/flow/hand_input.hpp>
+
+#include "gloves/open_hand.hpp"
+#include "render/scene_frame.hpp"
+
+namespace nendo::studio {
+
+/// What the start screen says about a device.
+struct DeviceCard {
+  enum class State : std::uint8_t { opening, streaming, silent, refused, tracker };
+  State state = State::opening;
+  std::string title;            ///< the glove's model and hand, or the device's description
+  std::string words;            ///< its state, as a sentence
+  std::string remedy;           ///< what the user can do; empty: nothing is to do
+  std::string spec;             ///< the argument for open_glove(); empty: not a glove
+  std::optional<Side> side{};   ///< of an open glove
+  bool is_uncalibrated = false; ///< a person wears it with an average hand's calibration
+  bool is_simulated = false;
+};
+
+class GloveBoard {
+public:
+  /// Opens the gloves `named` or, if there are none, each glove that is plugged in now or later.
+  /// Opening takes seconds and happens in a thread of its own.
+  GloveBoard(std::vector<std::string> named, gloves::CalibrationOptions calibration);
+  /// Closes the gloves, so that a run can open them. Blocks while one is being opened.
+  ~GloveBoard();
+  GloveBoard(const GloveBoard&) = delete;
+  GloveBoard& operator=(const GloveBoard&) = delete;
+
+  /// Reads what the gloves have sent.
+  void update();
+  const std::vector<DeviceCard>& cards() const noexcept { return cards_; }
+  /// Returns whether a person's glove is open.
+  bool has_gloves() const noexcept;
+  /// Puts the hands into a scene in metres, side by side, upright, with their backs to the viewer.
+  void pose(render::SceneFrame& scene_frame) const;
+
+private:
+  /// A device between the thread that finds and opens it and the main thread.
+  struct Device {
+    driver::DeviceCandidate candidate;
+    std::string spec;
+    std::optional<gloves::OpenHand> hand; ///< open and started
+    std::optional<Error> error;
+    bool is_gone = false;
+  };
+  struct Live {
+    std::shared_ptr<Device> device;
+    std::optional<flow::GloveHand> hand; ///< since its first sample
+    std::string calibration;
+  };
+
+  void watch(); ///< the thread's work
+  void add(std::string spec, const driver::DeviceCandidate& candidate);
+  void remove(const driver::DeviceCandidate& candidate);
+  void take_found();
+  void read(Live& live);
+  DeviceCard card_of(Live& live) const;
+
+  gloves::CalibrationOptions calibration_;
+  std::vector<std::string> named_;
+  std::mutex mutex_; ///< guards found_ and Device::is_gone
+  std::vector<std::shared_ptr<Device>> found_;
+  std::vector<Live> live_;
+  std::vector<DeviceCard> cards_;
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
+} // namespace nendo::studio

@@ -1,0 +1,159 @@
+#include "studio/studio_view.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "session/kept_state.hpp"
+#include "viewer/live_window.hpp"
+#include "viewer/puppet_editor.hpp"
+
+namespace nendo::studio {
+
+using session::Asks;
+using session::RunStatus;
+
+namespace {
+
+bool ends_run(const session::Ask& ask) {
+  const auto* const command = std::get_if<flow::Command>(&ask);
+  return command != nullptr && std::holds_alternative<flow::EndRun>(*command);
+}
+
+} // namespace
+
+StudioView::StudioView(Parts parts, std::string file, bool asks_to_save)
+    : parts_(std::move(parts)), file_(std::move(file)), asks_to_save_(asks_to_save) {}
+
+StudioView::~StudioView() = default;
+
+void StudioView::loop_begins(const session::LoopStart& start) {
+  parts_.shaping->loop_begins(start);
+}
+
+Screen StudioView::screen() const noexcept {
+  if (shows_timeline_) return Screen::timeline;
+  const viewer::PuppetEditor& editor = parts_.shaping->window().editor();
+  return editor.is_on() && !editor.paints_masks() ? Screen::puppet : Screen::shaping;
+}
+
+void StudioView::update(const RunStatus& status, Asks& asks) {
+  const bool in_timeline = shows_timeline_ && timeline_ && !timeline_->file().empty();
+  parts_.bar.set({screen(), in_timeline ? timeline_->file() : file_,
+                  in_timeline ? timeline_->is_modified() : status.modified, !shows_timeline_});
+  follow_recording(status);
+  show_screen(status, asks);
+  if (const auto file = parts_.bar.take_save()) {
+    if (saving_ == Saving::asked) saving_ = Saving::begun;
+    if (file->empty())
+      asks.emplace_back(flow::SaveShape{});
+    else
+      asks.emplace_back(session::SaveShapeAs{*file});
+  }
+  const Wish wish = parts_.bar.take_wish();
+  if (is_wish(wish)) go(wish, status, asks);
+  follow_saving(status, asks);
+}
+
+/// Closing the window, and the key q, leave the program, and not only the run.
+void StudioView::show_screen(const RunStatus& status, Asks& asks) {
+  if (shows_timeline_) return show_timeline(status, asks);
+  Asks given;
+  parts_.shaping->update(status, given);
+  const bool is_ended = std::erase_if(given, ends_run) > 0;
+  std::ranges::move(given, std::back_inserter(asks));
+  if (is_ended) go(Quit{}, status, asks);
+}
+
+void StudioView::show_timeline(const RunStatus& status, Asks& asks) {
+  const auto wish = timeline_->show();
+  if (!wish) {
+    parts_.bar.show_error(wish.error().message);
+    timeline_.reset();
+    go_to(Screen::shaping, status, asks);
+  } else if (is_wish(*wish)) {
+    go(*wish, status, asks);
+  }
+}
+
+void StudioView::follow_recording(const RunStatus& status) {
+  if (status.recorded == recorded_) return;
+  recorded_ = status.recorded;
+  session::keep_recent_file(recorded_);
+  if (std::exchange(opens_recording_, false))
+    timeline_ = std::make_unique<TimelineScreen>(parts_.window, recorded_);
+  else if (!timeline_ || !timeline_->is_modified())
+    timeline_.reset(); // the tab opens the new one
+  if (shows_timeline_ && !timeline_)
+    timeline_ = std::make_unique<TimelineScreen>(parts_.window, recorded_);
+  report("recorded in " + recorded_ + "; the tab Timeline opens it");
+}
+
+/// A run reports each save, and each that failed, which keeps the user here.
+void StudioView::report(const std::string& message) {
+  if (saving_ == Saving::begun) saving_ = Saving::tried;
+  parts_.shaping->report(message);
+}
+
+/// Goes on when the user's answer has been carried out.
+void StudioView::follow_saving(const RunStatus& status, Asks& asks) {
+  const bool is_saved = std::exchange(saves_, status.saves) != status.saves;
+  if (is_saved) session::keep_recent_file(std::string(status.saved));
+  if (saving_ == Saving::tried && is_saved) return leave(waiting_, asks);
+  const bool is_cancelled = saving_ == Saving::asked && !parts_.bar.has_dialog();
+  if (saving_ == Saving::tried || is_cancelled) saving_ = Saving::none;
+  const auto answer = parts_.bar.take_answer();
+  if (!answer) return;
+  if (*answer == Answer::discard) leave(waiting_, asks);
+  if (*answer != Answer::save) return;
+  saving_ = status.saved.empty() ? Saving::asked : Saving::begun;
+  if (status.saved.empty())
+    parts_.bar.ask_where_to_save();
+  else
+    asks.emplace_back(session::SaveShapeAs{std::string(status.saved)});
+}
+
+void StudioView::go(const Wish& wish, const RunStatus& status, Asks& asks) {
+  if (const auto* const there = std::get_if<Go>(&wish))
+    if (there->screen != Screen::start && there->screen != Screen::calibration)
+      return go_to(there->screen, status, asks);
+  if (const auto* const open = std::get_if<Open>(&wish)) {
+    if (open->file.empty()) return parts_.bar.ask_what_to_open();
+    if (open->file.ends_with(".nendo") || open->file.ends_with(".timeline.toml")) {
+      timeline_ = std::make_unique<TimelineScreen>(parts_.window, open->file);
+      session::keep_recent_file(open->file);
+      return go_to(Screen::timeline, status, asks);
+    }
+  }
+  if (!asks_to_save_ || !status.modified) return leave(wish, asks);
+  waiting_ = wish;
+  parts_.bar.ask("the shape of " + file_);
+}
+
+void StudioView::go_to(Screen screen, const RunStatus& status, Asks& asks) {
+  const bool is_timeline = screen == Screen::timeline;
+  if (is_timeline && status.facts.recorded) {
+    opens_recording_ = true;
+    asks.emplace_back(flow::SetRecording{false});
+  }
+  if (is_timeline && !timeline_)
+    timeline_ = std::make_unique<TimelineScreen>(parts_.window, recorded_);
+  if (is_timeline && !shows_timeline_) {
+    held_ = status.frame.held;
+    if (held_) asks.emplace_back(flow::Request::release);
+    timeline_->show_again();
+  }
+  if (!is_timeline && shows_timeline_) {
+    parts_.shaping->show_again(status);
+    if (std::exchange(held_, false)) asks.emplace_back(flow::Request::grab);
+  }
+  shows_timeline_ = is_timeline;
+  if (!is_timeline) parts_.shaping->window().editor().turn(screen == Screen::puppet);
+}
+
+void StudioView::leave(const Wish& wish, Asks& asks) {
+  left_for_ = wish;
+  is_settled_ = asks_to_save_;
+  asks.emplace_back(flow::EndRun{});
+}
+
+} // namespace nendo::studio

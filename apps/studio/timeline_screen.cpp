@@ -1,0 +1,119 @@
+#include "studio/timeline_screen.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <imgui.h>
+
+#include <nendo/base/text.hpp>
+#include <nendo/recording/take_reader.hpp>
+
+#include "edit/edit_actions.hpp"
+#include "takes/model_files.hpp"
+#include "timeline/reduce.hpp"
+#include "viewer/controls.hpp"
+#include "viewer/theme.hpp"
+
+namespace nendo::studio {
+namespace {
+
+using Frames = Result<std::unique_ptr<takes::TimelineFrames>>;
+
+/// A timeline of the recording, which is in memory until it is saved.
+Frames frames_of_recording(const std::string& file) {
+  const auto reader = recording::TakeReader::open(file);
+  if (!reader) return reader.error();
+  const auto model = takes::recorded_model(file, reader->setup(), {});
+  if (!model) return model.error();
+  const auto tolerance = edit::parse_tolerance(edit::MakeOptions{}.tolerance);
+  auto made = timeline::timeline_of_take(file, model->mesh, *tolerance);
+  if (!made) return made.error();
+  return takes::TimelineFrames::make(std::move(made->timeline), model->mesh);
+}
+
+/// Of an earlier timeline of this recording nothing is overwritten.
+std::string beside_recording(const std::string& recording) {
+  const std::string stem = std::filesystem::path(recording).replace_extension().string();
+  std::error_code ignored;
+  std::string file = stem + std::string(timeline::file_ending);
+  for (int number = 2; std::filesystem::exists(file, ignored); ++number)
+    file = stem + "-" + std::to_string(number) + std::string(timeline::file_ending);
+  return file;
+}
+
+} // namespace
+
+TimelineScreen::TimelineScreen(std::shared_ptr<viewer::SceneWindow> window, std::string file)
+    : window_(std::move(window)), file_(std::move(file)) {
+  if (file_.empty()) return;
+  const bool is_timeline = timeline::is_timeline(file_);
+  out_ = is_timeline ? file_ : beside_recording(file_);
+  reading_ = std::async(std::launch::async, [is_timeline, name = file_]() -> Frames {
+    return is_timeline ? takes::TimelineFrames::open(name) : frames_of_recording(name);
+  });
+}
+
+TimelineScreen::TimelineScreen(std::shared_ptr<viewer::SceneWindow> window,
+                               const FirstTimeline& first)
+    : window_(std::move(window)), file_(first.file), out_(first.out),
+      editing_(std::make_unique<edit::WindowEditing>(window_, *first.frames, first.out)) {
+  if (first.key) editing_->session().select(first.key);
+  if (first.at_s) editing_->session().seek(*first.at_s);
+}
+
+bool TimelineScreen::is_modified() const noexcept {
+  return editing_ && editing_->session().history().is_modified();
+}
+
+void TimelineScreen::save() {
+  viewer::EditActions actions;
+  actions.commands.push_back(viewer::EditCommand::save);
+  if (editing_) editing_->session().handle(actions);
+}
+
+void TimelineScreen::show_again() {
+  if (editing_) editing_->show_again();
+}
+
+/// Says what is done, or what there is to do.
+void TimelineScreen::show_waiting(Wish& wish) {
+  const render::SceneFrame nothing;
+  window_->leave_left(0);
+  window_->leave_below(0);
+  window_->begin_picture(nothing, false);
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({all.x / 2.0F, all.y / 2.0F}, ImGuiCond_Always, {0.5F, 0.5F});
+  ImGui::Begin("timeline", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+  if (file_.empty()) {
+    ImGui::TextUnformatted("Record while the hands shape: t begins, t again ends.\n"
+                           "The recording then opens here, as key poses of both hands.");
+    if (viewer::button("Open a recording or a timeline...")) wish = Open{};
+  } else {
+    ImGui::Text("Reading %s", printable(file_).c_str());
+  }
+  ImGui::End();
+  window_->end_picture();
+  if (window_->take_close_request()) wish = Quit{};
+}
+
+Result<Wish> TimelineScreen::show() {
+  Wish wish;
+  if (reading_.valid() && reading_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    auto frames = reading_.get();
+    if (!frames) return frames.error();
+    editing_ = std::make_unique<edit::WindowEditing>(window_, **frames, out_);
+  }
+  if (!editing_) {
+    show_waiting(wish);
+    return wish;
+  }
+  if (const auto shown = editing_->show(); !shown) return shown.error();
+  if (editing_->session().has_ended()) wish = Quit{};
+  return wish;
+}
+
+} // namespace nendo::studio

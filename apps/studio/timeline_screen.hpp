@@ -1,0 +1,55 @@
+#pragma once
+// The timeline as a screen of the studio: opened from its file, or made from a recording. Main
+// thread.
+
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "edit/window_editing.hpp"
+#include "studio/wish.hpp"
+#include "takes/timeline_frames.hpp"
+#include "timeline/edit.hpp"
+
+namespace nendo::studio {
+
+/// A timeline that was read already, and what is shown of it first.
+struct FirstTimeline {
+  std::string file;
+  std::string out; ///< where it is saved
+  std::shared_ptr<takes::TimelineFrames> frames;
+  std::optional<timeline::KeyRef> key{}; ///< selected
+  std::optional<double> at_s{};          ///< position of the play head
+};
+
+class TimelineScreen {
+public:
+  /// Begins to read a timeline or a recording in a thread of its own. A recording is replayed for
+  /// it, which takes a small part of its duration. Without a file, the screen says how to get one.
+  TimelineScreen(std::shared_ptr<viewer::SceneWindow> window, std::string file);
+  TimelineScreen(std::shared_ptr<viewer::SceneWindow> window, const FirstTimeline& first);
+
+  /// Draws one picture. Returns Quit when the user closes the window, which asks about unsaved
+  /// changes. Error: the file cannot be read or played.
+  Result<Wish> show();
+  /// Shows its model again, after something else was shown in the window.
+  void show_again();
+
+  const std::string& file() const noexcept { return file_; }
+  bool is_modified() const noexcept;
+  void save();
+  /// Returns the editing; null: the file is still being read, or there is none.
+  edit::WindowEditing* editing() noexcept { return editing_.get(); }
+
+private:
+  void show_waiting(Wish& wish);
+
+  std::shared_ptr<viewer::SceneWindow> window_;
+  std::string file_; ///< empty: none
+  std::string out_;  ///< where the timeline is saved
+  std::future<Result<std::unique_ptr<takes::TimelineFrames>>> reading_;
+  std::unique_ptr<edit::WindowEditing> editing_;
+};
+
+} // namespace nendo::studio

@@ -1,0 +1,45 @@
+#pragma once
+// What the user wants to do next in the studio's window.
+
+#include <cstdint>
+#include <string>
+#include <variant>
+
+namespace nendo::studio {
+
+/// The screens, each a tab at the window's top.
+enum class Screen : std::uint8_t { start, shaping, puppet, timeline, calibration };
+
+/// The hands of a run that has no gloves named on the command line.
+enum class Hands : std::uint8_t {
+  found,  ///< the machine's gloves, or simulated hands that move
+  moving, ///< simulated hands that move
+  still,  ///< simulated hands that only the mouse moves
+};
+
+/// A run with this model.
+struct Shape {
+  std::string model{};  ///< a file; empty: the usual one of the mode or the puppet
+  std::string mode{};   ///< by its name (flow::mode_names); empty: the usual one
+  std::string puppet{}; ///< a puppet's file, which may be new, or a shipped puppet; empty: none
+  Hands hands = Hands::found;
+};
+/// Another screen.
+struct Go {
+  Screen screen = Screen::start;
+  std::string glove{}; ///< for calibration: the GLOVE; empty: not chosen yet
+};
+/// A model, a puppet, a recording or a timeline, by its name's ending.
+struct Open {
+  std::string file;
+};
+struct Quit {};
+
+/// std::monostate: to go on here.
+using Wish = std::variant<std::monostate, Shape, Go, Open, Quit>;
+
+inline bool is_wish(const Wish& wish) noexcept {
+  return !std::holds_alternative<std::monostate>(wish);
+}
+
+} // namespace nendo::studio
