@@ -147,23 +147,39 @@ Result<timeline::Tolerance> parse_tolerance(const std::string& text) {
   return tolerance;
 }
 
-int make_timeline(const MakeOptions& options) {
+Result<TimelineOfTake> timeline_of_take(const MakeOptions& options) {
   const auto tolerance = parse_tolerance(options.tolerance);
-  if (!tolerance) return cli::report(tolerance.error());
-  if (const auto fine = cli::check_place("--out", options.out, {timeline::file_ending}); !fine)
-    return cli::report(fine.error());
+  if (!tolerance) return tolerance.error();
   const auto reader = recording::TakeReader::open(options.take);
-  if (!reader) return cli::report(reader.error());
-  const auto model = takes::recorded_model(options.take, reader->setup(), options.mesh);
-  if (!model) return cli::report(model.error());
-  auto made = timeline::timeline_of_take(options.take, model->mesh, *tolerance);
-  if (!made) return cli::report(made.error());
-  if (!options.mesh.empty()) {
+  if (!reader) return reader.error();
+  recording::Setup setup = reader->setup();
+  auto model = takes::recorded_model(options.take, setup, options.mesh);
+  if (!model) return model.error();
+  const bool is_midway = !setup.loop->rest.empty() || !setup.loop->origins.empty();
+  const std::string first =
+      options.out.substr(0, options.out.size() - timeline::file_ending.size()) + ".first.ply";
+  if (const auto begun = takes::begin_with_first_shape(first, setup, *model); !begun)
+    return begun.error();
+  auto made = timeline::timeline_of_take(options.take, setup, model->mesh, *tolerance);
+  if (!made) return made.error();
+  if (!options.mesh.empty() && !is_midway) {
     made->timeline.mesh = std::filesystem::absolute(options.mesh).string();
     made->timeline.mesh_sum = recording::sum_of(model->mesh.vertices);
   }
+  return TimelineOfTake{*std::move(made), std::move(model->mesh), is_midway ? first : ""};
+}
+
+int make_timeline(const MakeOptions& options) {
+  if (const auto fine = cli::check_place("--out", options.out, {timeline::file_ending}); !fine)
+    return cli::report(fine.error());
+  const auto of_take = timeline_of_take(options);
+  if (!of_take) return cli::report(of_take.error());
+  const timeline::MadeTimeline* const made = &of_take->made;
   if (const auto written = timeline::write_timeline(options.out, made->timeline); !written)
     return cli::report(written.error());
+  if (!of_take->first_shape.empty())
+    cli::note(options.take + ": begins in the middle of a run; the shape of that moment is in " +
+              of_take->first_shape + ", which is the timeline's model");
   if (!made->exact) takes::note_missing(options.take);
   if (made->has_last_puppet)
     cli::note(options.take + ": the puppet was edited in it; the timeline plays all of it with the "

@@ -21,6 +21,18 @@ struct MakeOptions {
 };
 int make_timeline(const MakeOptions& options);
 
+/// A timeline of a recording, with its model.
+struct TimelineOfTake {
+  timeline::MadeTimeline made;
+  deform::Mesh model;
+  std::string first_shape{}; ///< the file that was written for it; empty: none
+};
+/// Makes a timeline that is to be saved in options.out. If the recording began in the middle of a
+/// run, the shape of that moment is written into a file beside it, and is the timeline's model.
+/// Blocks. Errors: those of takes::recorded_model(), takes::begin_with_first_shape() and
+/// timeline::timeline_of_take().
+Result<TimelineOfTake> timeline_of_take(const MakeOptions& options);
+
 struct ShowOptions {
   std::string file;
   std::string finger;     ///< its tip's places are shown; empty means no finger

@@ -91,7 +91,7 @@ void StartScreen::load_pictures() {
   for (const ModeCard& card : modes) {
     const auto image = render::read_png(cli::shipped_model("").parent_path().parent_path() /
                                         "pictures" / card.picture);
-    modes_.push_back(image ? std::make_unique<viewer::Picture>(*image) : nullptr);
+    modes_.push_back(image ? std::make_unique<viewer::CardPicture>(*image) : nullptr);
   }
 }
 
@@ -123,7 +123,7 @@ void StartScreen::draw_modes(Wish& wish) {
   const float width = viewer::share_of_line(modes.size());
   for (std::size_t at = 0; at < modes.size(); ++at) {
     if (at > 0) ImGui::SameLine();
-    if (viewer::picture_button(modes[at].title, modes_[at].get(), picture_ratio, width))
+    if (viewer::picture_card(modes[at].title, modes_[at].get(), picture_ratio, width))
       wish = shape_of(at);
     viewer::show_text(modes[at].help);
   }
@@ -140,8 +140,8 @@ void StartScreen::draw_models(Wish& wish) {
     if (begins_recent) ImGui::TextUnformatted("Recent");
     const std::size_t in_group = at < shipped ? at : at - shipped;
     if (in_group % in_line != 0) ImGui::SameLine();
-    if (viewer::picture_button(models_[at].title, gallery_.picture(at), picture_ratio, width,
-                               at == chosen_))
+    if (viewer::picture_card(models_[at].title, gallery_.picture(at), picture_ratio, width,
+                             at == chosen_))
       chosen_ = at == chosen_ ? models_.size() : at;
     viewer::show_text(models_[at].file);
   }

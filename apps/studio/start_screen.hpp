@@ -51,7 +51,7 @@ private:
 
   std::vector<Model> models_;
   ModelGallery gallery_;
-  std::vector<std::unique_ptr<viewer::Picture>> modes_; ///< their pictures; null: unreadable
+  std::vector<std::unique_ptr<viewer::CardPicture>> modes_; ///< their pictures; null: unreadable
   GloveBoard board_;
   GloveBoard simulated_; ///< the hands that are shown without gloves
   bool are_gloves_named_ = false;

@@ -8,11 +8,8 @@
 #include <imgui.h>
 
 #include <nendo/base/text.hpp>
-#include <nendo/recording/take_reader.hpp>
 
 #include "edit/edit_actions.hpp"
-#include "takes/model_files.hpp"
-#include "timeline/reduce.hpp"
 #include "viewer/controls.hpp"
 #include "viewer/theme.hpp"
 
@@ -21,16 +18,14 @@ namespace {
 
 using Frames = Result<std::unique_ptr<takes::TimelineFrames>>;
 
-/// A timeline of the recording, which is in memory until it is saved.
-Frames frames_of_recording(const std::string& file) {
-  const auto reader = recording::TakeReader::open(file);
-  if (!reader) return reader.error();
-  const auto model = takes::recorded_model(file, reader->setup(), {});
-  if (!model) return model.error();
-  const auto tolerance = edit::parse_tolerance(edit::MakeOptions{}.tolerance);
-  auto made = timeline::timeline_of_take(file, model->mesh, *tolerance);
-  if (!made) return made.error();
-  return takes::TimelineFrames::make(std::move(made->timeline), model->mesh);
+/// A timeline of the recording, which is in memory until it is saved in `out`.
+Frames frames_of_recording(const std::string& file, const std::string& out) {
+  edit::MakeOptions options;
+  options.take = file;
+  options.out = out;
+  auto of_take = edit::timeline_of_take(options);
+  if (!of_take) return of_take.error();
+  return takes::TimelineFrames::make(std::move(of_take->made.timeline), of_take->model);
 }
 
 /// Of an earlier timeline of this recording nothing is overwritten.
@@ -50,8 +45,8 @@ TimelineScreen::TimelineScreen(std::shared_ptr<viewer::SceneWindow> window, std:
   if (file_.empty()) return;
   const bool is_timeline = timeline::is_timeline(file_);
   out_ = is_timeline ? file_ : beside_recording(file_);
-  reading_ = std::async(std::launch::async, [is_timeline, name = file_]() -> Frames {
-    return is_timeline ? takes::TimelineFrames::open(name) : frames_of_recording(name);
+  reading_ = std::async(std::launch::async, [is_timeline, name = file_, out = out_]() -> Frames {
+    return is_timeline ? takes::TimelineFrames::open(name) : frames_of_recording(name, out);
   });
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <nendo/deform/mesh.hpp>
 #include <nendo/deform/offset.hpp>
 #include <nendo/deform/read_notes.hpp>
+#include <nendo/deform/vertex_blocks.hpp>
 #include <nendo/recording/loop_replay.hpp>
 
 #include "cli/cli.hpp"
@@ -198,6 +200,28 @@ Result<RecordedModel> recorded_model(const std::string& file, const recording::S
   if (!setup.loop)
     return Error{Errc::bad_input, file + ": " + std::string(recording::without_loop)};
   return find_recorded_model(*setup.loop, named);
+}
+
+Result<void> begin_with_first_shape(const std::string& file, recording::Setup& setup,
+                                    RecordedModel& model) {
+  recording::LoopSetup& loop = *setup.loop;
+  if (loop.rest.empty() && loop.origins.empty()) return {};
+  if (!loop.rest.empty()) {
+    const deform::BlockLayout layout(model.mesh.vertices);
+    if (loop.rest.size() != layout.block_count())
+      return Error{Errc::bad_input, "the shape at its beginning is not one of this model"};
+    layout.unpack(deform::BlockShape(loop.rest), model.mesh.vertices);
+  }
+  if (const auto written = deform::write_mesh(file, model.mesh, {}, model.up()); !written)
+    return written;
+  auto read = read_models_silently(file, model.reading);
+  if (!read) return read.error();
+  model.mesh = std::move(read->mesh);
+  loop.mesh = std::filesystem::absolute(file).string();
+  loop.mesh_sum = recording::sum_of(model.mesh.vertices);
+  loop.rest.clear();
+  loop.origins.clear();
+  return {};
 }
 
 void note_missing(const std::string& file) {

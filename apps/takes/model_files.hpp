@@ -51,6 +51,13 @@ Result<RecordedModel> find_recorded_model(const recording::LoopSetup& loop,
 Result<RecordedModel> recorded_model(const std::string& file, const recording::Setup& setup,
                                      const std::string& named = {});
 
+/// Writes the shape with which a recording began in the middle of a run into `file`, and makes it
+/// the setup's model, as if the run had begun with it. Returns the model as it is read from there.
+/// Does nothing to a recording that began with its model. Blocks. Errors: those of write_mesh() and
+/// read_mesh().
+Result<void> begin_with_first_shape(const std::string& file, recording::Setup& setup,
+                                    RecordedModel& model);
+
 /// Prints a note on standard error that something is missing in the recording.
 void note_missing(const std::string& file);
 

@@ -314,18 +314,23 @@ void reduce(Tolerance tolerance, MadeTimeline& made) {
 
 Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const deform::Mesh& model,
                                       const Tolerance& tolerance, std::size_t most) {
+  const auto reader = TakeReader::open(take);
+  if (!reader) return reader.error();
+  return timeline_of_take(take, reader->setup(), model, tolerance, most);
+}
+
+Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const Setup& setup,
+                                      const deform::Mesh& model, const Tolerance& tolerance,
+                                      std::size_t most) {
   auto reader = TakeReader::open(take);
   if (!reader) return reader.error();
   const auto bad = [&take](const std::string& what) {
     return Error{Errc::bad_input, take.string() + ": " + what};
   };
-  auto replay = LoopReplay::make(reader->setup(), model);
+  auto replay = LoopReplay::make(setup, model);
   if (!replay) return bad(replay.error().message);
-  const Setup& setup = reader->setup();
   if (!setup.loop->rest.empty() || !setup.loop->origins.empty())
-    return bad(
-        "begins in the middle of a run, with a shape that is no file's; a timeline begins with "
-        "its model. Record from the beginning of the run, with --record");
+    return bad("begins in the middle of a run, with a shape that is no file's");
   MadeTimeline made;
   made.timeline = begin_timeline(setup, take);
   std::optional<recording::PuppetChange> change;

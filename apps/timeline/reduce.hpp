@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <nendo/base/result.hpp>
+#include <nendo/recording/setup.hpp>
 
 #include "timeline/timeline.hpp"
 
@@ -73,15 +74,19 @@ struct MadeTimeline {
   bool has_last_puppet = false; ///< the puppet was edited on the way; the timeline has the last one
 };
 
-/// Runs the recorded loop again over `model`, which should be the recorded one. The hands' angles
+/// Runs the recorded loop of `setup` again over `model`, which should be its own. The hands' angles
 /// become keys; requests, what the wrist switch did, commands of a puppet, and marks become
 /// events. The points of a puppet are off by the tolerance at most, by both hands together. The key
 /// at 0 s is the pose in which a hand grabbed, one period before the first tick. Blocks. Errors:
 /// those of TakeReader::open() and LoopReplay::make(); bad_input (no tick, or more than `most`
-/// frames or events; a puppet that was begun on the way).
-/// A timeline has one puppet. Where a take has several, because one was edited on the way, it is
-/// the last one, from the beginning on. Functions that it has not are left out, and so are undos
-/// and redos of edits.
+/// frames or events; a puppet that was begun on the way; a setup that begins in the middle of a
+/// run, which takes::begin_with_first_shape() changes). A timeline has one puppet. Where a take has
+/// several, because one was edited on the way, it is the last one, from the beginning on. Functions
+/// that it has not are left out, and so are undos and redos of edits.
+Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take,
+                                      const recording::Setup& setup, const deform::Mesh& model,
+                                      const Tolerance& tolerance, std::size_t most = max_keys);
+/// Does the same with the recording's own setup.
 Result<MadeTimeline> timeline_of_take(const std::filesystem::path& take, const deform::Mesh& model,
                                       const Tolerance& tolerance, std::size_t most = max_keys);
 static_assert(max_keys == max_events);

@@ -48,6 +48,11 @@ public:
   void put() {
     const ImGuiIO& io = ImGui::GetIO();
     if (const auto place = std::exchange(clicked_, {})) put_pointer(place->x, place->y);
+    // A field gets letters as text. Their keys would be commands when it is closed.
+    if (io.WantTextInput)
+      std::erase_if(waiting_, [](const Tap& tap) {
+        return tap.key <= GLFW_KEY_GRAVE_ACCENT && !tap.control;
+      });
     const int before = std::exchange(last_, 0);
     while (!waiting_.empty()) {
       const Tap tap = waiting_.front();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <filesystem>
 #include <fstream>
 #include <thread>
 #include <utility>
@@ -25,6 +26,39 @@ using namespace nendo::takes;
 using namespace nendo::session::asking;
 
 namespace {
+
+/// Saves the shape of hands that have released it under a name, and again without one.
+class Namer final : public PacingObserver {
+public:
+  Namer(std::string file, bool is_settled) : file_(std::move(file)), is_settled_(is_settled) {}
+  void update(const RunStatus& status, Asks& asks) override {
+    if (!status.fresh) return;
+    was_modified = was_modified || status.modified;
+    if (step_ == 0 && status.modified) {
+      asks.emplace_back(flow::Request::release);
+      step_ = 1;
+    } else if (step_ == 1 && !status.frame.held) {
+      asks.emplace_back(SaveShapeAs{file_});
+      step_ = 2;
+    } else if (step_ == 2 && status.saves == 1) {
+      was_clean = !status.modified && status.saved == file_;
+      asks.emplace_back(flow::SaveShape{});
+      step_ = 3;
+    } else if (step_ == 3 && status.saves == 2) {
+      asks.emplace_back(flow::EndRun{});
+    }
+  }
+  void report(const std::string& message) override { reports.push_back(message); }
+  bool has_settled_shape() const noexcept override { return is_settled_; }
+
+  std::vector<std::string> reports;
+  bool was_modified = false, was_clean = false;
+
+private:
+  std::string file_;
+  bool is_settled_;
+  int step_ = 0;
+};
 
 /// Asks for the shape to be saved, and ends the run at once.
 class Saver final : public PacingObserver {
@@ -235,6 +269,27 @@ TEST_SUITE("run_session") {
     CHECK(kept->vertices.cols() == run.mesh.vertices.cols());
     CHECK((kept->vertices - last->vertices).cwiseAbs().maxCoeff() < 0.15); // a tick or two
     CHECK((kept->vertices - run.mesh.vertices).cwiseAbs().maxCoeff() > 1e-4);
+  }
+
+  TEST_CASE("a shape is saved under a chosen name again and again, and then is not modified") {
+    Run run;
+    const auto chosen = (run.folder.path() / "chosen.ply").string();
+    for (const bool is_settled : {true, false}) {
+      CAPTURE(is_settled);
+      std::filesystem::remove(run.options.out);
+      auto opened = open_hands(run.options, run.mesh, run.event_count);
+      REQUIRE(opened);
+      Namer namer(chosen, is_settled);
+      const auto outcome =
+          run_session(run.options, opened->hands, run.mesh, {[](const auto&, double) {}, {&namer}});
+      REQUIRE(outcome);
+      CHECK(namer.reports == std::vector(2, "saved as " + chosen));
+      CHECK(namer.was_modified); // by the hands, before
+      CHECK(namer.was_clean);    // after the hands had released the shape, and it was saved
+      CHECK(deform::read_mesh(chosen));
+      CHECK(std::filesystem::exists(run.options.out) == !is_settled);
+      CHECK(outcome->result == (is_settled ? chosen : run.options.out));
+    }
   }
 
   TEST_CASE(

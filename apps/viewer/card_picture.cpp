@@ -1,4 +1,4 @@
-#include "viewer/picture.hpp"
+#include "viewer/card_picture.hpp"
 
 #include <string>
 #include <type_traits>
@@ -25,7 +25,7 @@ Id imgui_texture(unsigned texture) {
 
 } // namespace
 
-Picture::Picture(const render::Image& image)
+CardPicture::CardPicture(const render::Image& image)
     : ratio_(static_cast<float>(image.size().width) / static_cast<float>(image.size().height)) {
   glGenTextures(1, &texture_);
   glBindTexture(GL_TEXTURE_2D, texture_);
@@ -39,11 +39,11 @@ Picture::Picture(const render::Image& image)
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-Picture::~Picture() {
+CardPicture::~CardPicture() {
   glDeleteTextures(1, &texture_);
 }
 
-bool picture_button(std::string_view name, const Picture* picture, float ratio, float width,
+bool picture_card(std::string_view name, const CardPicture* picture, float ratio, float width,
                     bool is_chosen) {
   const std::string text(name);
   const float gap = em(0.35F), height = width / ratio;

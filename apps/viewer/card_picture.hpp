@@ -1,5 +1,5 @@
 #pragma once
-// Pictures in widgets. Main thread, while a window is open.
+// Cards: buttons with pictures. Main thread, while a window is open.
 
 #include <string_view>
 
@@ -8,12 +8,12 @@
 namespace nendo::viewer {
 
 /// A picture in the memory of the graphics card.
-class Picture {
+class CardPicture {
 public:
-  explicit Picture(const render::Image& image);
-  ~Picture();
-  Picture(const Picture&) = delete;
-  Picture& operator=(const Picture&) = delete;
+  explicit CardPicture(const render::Image& image);
+  ~CardPicture();
+  CardPicture(const CardPicture&) = delete;
+  CardPicture& operator=(const CardPicture&) = delete;
 
   unsigned texture() const noexcept { return texture_; } ///< OpenGL's name
   float width_of_height() const noexcept { return ratio_; }
@@ -25,7 +25,7 @@ private:
 
 /// A button `width` pixels wide with a picture, and its name below. Null: an empty frame of
 /// `ratio` times its height. Tests press it by its name.
-bool picture_button(std::string_view name, const Picture* picture, float ratio, float width,
+bool picture_card(std::string_view name, const CardPicture* picture, float ratio, float width,
                     bool is_chosen = false);
 
 } // namespace nendo::viewer
