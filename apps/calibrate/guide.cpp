@@ -109,11 +109,14 @@ bool CalibrationGuide::is_again() const noexcept {
   return false;
 }
 
-void CalibrationGuide::go_back() {
-  const std::ptrdiff_t last = last_kept();
-  at_ = static_cast<std::size_t>(std::max<std::ptrdiff_t>(last, 0));
+void CalibrationGuide::ask_for(std::size_t number) {
+  at_ = number;
   kept_[at_].reset();
   ask_again();
+}
+
+void CalibrationGuide::go_back() {
+  ask_for(static_cast<std::size_t>(std::max<std::ptrdiff_t>(last_kept(), 0)));
 }
 
 void CalibrationGuide::take_again() {

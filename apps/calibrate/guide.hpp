@@ -52,10 +52,15 @@ public:
   /// Returns the sensor that makes the last held pose implausible, or nullopt.
   std::optional<Sensor> implausible_sensor() const noexcept { return implausible_; }
 
+  /// Returns the pose of a number below pose_count(), and whether it is kept.
+  hand::PoseId pose(std::size_t number) const noexcept { return poses_[number]; }
+  bool is_kept(std::size_t number) const noexcept { return kept_[number].has_value(); }
+
   /// Returns whether the pose asked for was taken before and is taken again.
   bool is_again() const noexcept;
 
-  void go_back();    ///< forgets the pose before this one and asks for it again
+  void ask_for(std::size_t number); ///< forgets the pose of that number and asks for it
+  void go_back();                   ///< forgets the pose before this one and asks for it again
   void take_again(); ///< asks for the pose before this one once more; both takes count
   void skip();       ///< continues without this pose; flat and fist are asked for again at the end
   void reset();      ///< forgets all poses and the free motion, and asks for the first pose
