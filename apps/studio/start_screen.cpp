@@ -77,7 +77,7 @@ StartScreen::StartScreen(viewer::SceneWindow& window, const StartOptions& option
     : models_(models()), gallery_(files_of(models_)), board_(options.gloves, options.calibration),
       simulated_({"sim:wave?hand=left", "sim:wave?hand=right&seed=2"}, {}),
       are_gloves_named_(!options.gloves.empty()), chosen_(models_.size()) {
-  window.clear_model();
+  window.clear_model(true);
   // About both hands, whether they are there or not.
   window.frame(
       {{-0.24F, 0.0F, 0.0F}, {0.24F, 0.0F, 0.0F}, {0.0F, 0.24F, 0.0F}, {0.0F, -0.16F, 0.0F}},

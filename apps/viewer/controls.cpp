@@ -193,6 +193,15 @@ bool number_field(std::string_view text, float& value, float min, float max, con
   return changed;
 }
 
+bool text_field(std::string_view name, std::span<char> text) {
+  label(name);
+  ImGui::PushID(name.data(), name.data() + name.size());
+  const bool changed = ImGui::InputText("##text", text.data(), text.size());
+  ImGui::PopID();
+  note_control(name, "");
+  return changed;
+}
+
 bool choice_field(std::string_view text, std::span<const std::string_view> names,
                   std::size_t& chosen) {
   ImGui::BeginGroup();

@@ -44,6 +44,8 @@ bool bar_field(std::string_view name, float& value, float min, float max, const 
 // Fields with a label at the left, both of which are the latest item:
 
 bool number_field(std::string_view label, float& value, float min, float max, const char* format);
+/// A text of at most text.size() - 1 bytes; it ends with 0.
+bool text_field(std::string_view label, std::span<char> text);
 /// A list of names, of which one is chosen.
 bool choice_field(std::string_view label, std::span<const std::string_view> names,
                   std::size_t& chosen);

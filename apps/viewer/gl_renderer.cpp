@@ -115,11 +115,6 @@ void GlRenderer::set_model(const deform::BlockLayout& layout, const render::Scen
   blocks_sent_ = 0;
 }
 
-void GlRenderer::clear_model() noexcept {
-  whole_ = false;
-  box_.setEmpty();
-}
-
 void GlRenderer::follow(const deform::BlockShape& shape) {
   const auto send = [](GLuint buffer, std::size_t block, const float* floats) {
     glBindBuffer(GL_TEXTURE_BUFFER, buffer);

@@ -27,8 +27,8 @@ public:
 
   /// Sets a model: its faces and the layout of its blocks. Call follow() before draw().
   void set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder);
-  /// Draws no model until the next set_model() and follow().
-  void clear_model() noexcept;
+  /// Draws no model until set_model() and follow().
+  void clear_model() noexcept { whole_ = false, box_.setEmpty(); }
   /// Uploads the blocks that changed since the last call, and the affected normals.
   void follow(const deform::BlockShape& shape);
   /// Returns the number of blocks that follow() has uploaded since set_model().

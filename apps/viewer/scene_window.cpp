@@ -167,7 +167,7 @@ void on_drop(GLFWwindow* window, int count, const char** files) {
 
 } // namespace
 
-SceneWindow::SceneWindow() : quick_(std::make_unique<QuickInput>()) {}
+SceneWindow::SceneWindow() : builder_(deform::Mesh()), quick_(std::make_unique<QuickInput>()) {}
 
 Result<std::unique_ptr<SceneWindow>>
 SceneWindow::open(const std::string& title, const WindowLook& look, const std::string& instead) {
@@ -223,14 +223,16 @@ SceneWindow::~SceneWindow() {
 
 void SceneWindow::set_model(const deform::BlockLayout& layout,
                             const render::SceneBuilder& builder) {
-  builder_.emplace(builder);
+  builder_ = builder;
   shown_.size = {};
   renderer_->set_model(layout, builder);
+  parts_.ground = true;
   if (std::exchange(kept_framed_, std::nullopt)) framed_ = false;
 }
 
-void SceneWindow::clear_model() {
-  builder_.emplace(deform::Mesh{}, 1.0);
+void SceneWindow::clear_model(bool has_ground) {
+  builder_ = render::SceneBuilder(deform::Mesh());
+  parts_.ground = has_ground;
   shown_.size = {};
   renderer_->clear_model();
   framed_ = false;
@@ -256,8 +258,7 @@ void SceneWindow::set_title(const std::string& title) {
 void SceneWindow::begin_picture(const render::SceneFrame& scene_frame, bool is_whole) {
   begun_ = HostClock::now();
   glfwPollEvents();
-  if (!builder_) clear_model();
-  builder_->build_beside(scene_frame, parts_, scene_);
+  builder_.build_beside(scene_frame, parts_, scene_);
   if (kept_framed_)
     look_at(kept_framed_->points, kept_framed_->view);
   else if (!framed_)
@@ -286,7 +287,7 @@ double SceneWindow::covered_part() const noexcept {
 
 void SceneWindow::choose_camera(render::View view) {
   auto points = scene_.outline();
-  const Eigen::Vector3f half = (builder_->size_m() / 2).cast<float>();
+  const Eigen::Vector3f half = (builder_.size_m() / 2).cast<float>();
   Eigen::AlignedBox3f box = renderer_->model_box();
   box.extend(Eigen::Vector3f(-half.x(), 0.0F, -half.z()));
   box.extend(Eigen::Vector3f(half.x(), 2.0F * half.y(), half.z()));
@@ -433,7 +434,7 @@ render::Size SceneWindow::scene_size() const noexcept {
 
 render::Camera SceneWindow::stage_camera() const noexcept {
   render::Camera camera = camera_;
-  if (builder_) camera.target += builder_->origin_m();
+  camera.target += builder_.origin_m();
   return camera;
 }
 

@@ -45,9 +45,10 @@ public:
   SceneWindow& operator=(const SceneWindow&) = delete;
 
   void set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder);
-  /// Shows no model, as at the beginning, on a stage in metres whose floor is y = 0. Chooses the
-  /// camera anew.
-  void clear_model();
+  /// Shows no model, as before the first set_model(), and chooses the camera anew. The scene is in
+  /// metres. With `has_ground`, y = 0 is the ground.
+  void clear_model(bool has_ground = false);
+  bool has_model() const noexcept { return !builder_.corners().empty(); }
   void follow(const deform::BlockShape& shape) { renderer_->follow(shape); }
 
   /// Begins a picture: processes the input since the last one, and builds the scene except the
@@ -91,6 +92,11 @@ public:
   void leave_left(int pixels) noexcept { left_ = pixels; }
   render::Size scene_size() const noexcept; ///< from the window's top left corner
   const render::Camera& camera() const noexcept { return camera_; }
+  /// Looks by this camera from the next picture on.
+  void look_by(const render::Camera& camera) noexcept {
+    camera_ = camera, framed_ = true;
+    kept_framed_.reset();
+  }
   /// Returns the camera in stage coordinates, such as those of hands. camera() is in scene
   /// coordinates.
   render::Camera stage_camera() const noexcept;
@@ -128,7 +134,7 @@ private:
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<GlRenderer> renderer_;
   std::unique_ptr<SmoothTarget> target_;
-  std::optional<render::SceneBuilder> builder_;
+  render::SceneBuilder builder_;
   std::optional<SimulatedInput> simulated_;
   std::unique_ptr<QuickInput> quick_;
   std::function<void()> bar_;

@@ -7,6 +7,7 @@ namespace nendo::viewer {
 namespace {
 
 constexpr float font_px = 15.0F; // on a screen of scale 1
+constexpr float large_font_px = 25.0F;
 
 /// Of Debian's packages fonts-inter and fonts-dejavu-core.
 constexpr std::initializer_list<const char*> fonts{
@@ -96,11 +97,15 @@ void use_font(float scale) {
   for (const char* const file : fonts) {
     std::error_code error; // ImGui asserts that the file can be read
     if (!std::filesystem::is_regular_file(file, error)) continue;
-    if (atlas.AddFontFromFileTTF(file, font_px * scale, nullptr, glyphs()) != nullptr) return;
+    if (atlas.AddFontFromFileTTF(file, font_px * scale, nullptr, glyphs()) == nullptr) continue;
+    atlas.AddFontFromFileTTF(file, large_font_px * scale);
+    return;
   }
-  ImFontConfig own;
-  own.SizePixels = 13.0F * scale; // for which it is drawn
-  atlas.AddFontDefault(&own);
+  for (const float size : {13.0F, 26.0F}) { // for which it is drawn, and twice as large
+    ImFontConfig own;
+    own.SizePixels = size * scale;
+    atlas.AddFontDefault(&own);
+  }
 }
 
 } // namespace
@@ -120,6 +125,10 @@ void use_theme(Theme theme, float scale) {
   ImGui::GetStyle() = style;
   use_font(scale);
   ImGui::GetIO().Fonts->Build(); // em() needs it before the first picture
+}
+
+ImFont* large_font() {
+  return ImGui::GetIO().Fonts->Fonts[1];
 }
 
 float scale() {

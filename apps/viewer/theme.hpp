@@ -19,6 +19,8 @@ inline float em(float count) {
   return count * ImGui::GetIO().Fonts->Fonts[0]->FontSize;
 }
 
+/// Returns a larger font, for what is read from afar. It has the letters of Western languages.
+ImFont* large_font();
 /// Returns the scale of the screen that the theme has.
 float scale();
 /// Returns whether the theme is dark.
