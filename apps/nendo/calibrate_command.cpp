@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,6 +24,9 @@
 #include "gloves/open_hand.hpp"
 #include "nendo/commands.hpp"
 #include "nendo/model_output.hpp"
+#ifdef NENDO_WINDOW
+#include "studio/calibration_screen.hpp"
+#endif
 
 namespace nendo::app::calibrate_command {
 namespace {
@@ -39,6 +44,7 @@ struct Options {
   bool quick = false;
   bool touch_up = false;
   bool fresh = false;
+  bool view = false;
 };
 
 /// Returns the sensors of the fingers in a list, and of the wrist.
@@ -65,14 +71,17 @@ Result<void> check(const Options& options) {
     return Error{Errc::usage, "--quick and --touch-up cannot be combined; give one of them"};
   if (options.glove.empty() == options.from.empty())
     return Error{Errc::usage, "name a GLOVE, or a capture with --from FILE"};
-  if (options.user.empty())
+  if (options.view && !options.from.empty())
+    return Error{Errc::usage, "--view and --from cannot be combined; give one of them"};
+  if (options.user.empty() && !options.view)
     return Error{Errc::usage, "--user is missing: name the wearer, e.g. --user anna"};
   if (auto fine = gloves::HandLength{options.length_mm}.check(); !fine) return fine;
   if (!(options.breadth_mm >= 50.0 && options.breadth_mm <= 130.0))
     return Error{Errc::usage, "--hand-breadth: use 50 to 130 millimetres, across the knuckles"};
   const bool at_terminal = ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0;
-  if (options.from.empty() && !at_terminal)
-    return Error{Errc::usage, "the guided calibration needs a terminal; elsewhere use --from FILE"};
+  if (options.from.empty() && !options.view && !at_terminal)
+    return Error{Errc::usage, "the guided calibration needs a terminal, or a screen with --view; "
+                              "elsewhere use --from FILE"};
   return {};
 }
 
@@ -96,23 +105,29 @@ void note_left_out(const std::string& source, SensorMask left_out) {
             (one ? "it" : "them") + ", and the joint is estimated from neighbouring sensors");
 }
 
+/// Reports what was written. Returns the exit code.
+int report_result(const Options& options, const calibrate::FinishedCalibration& finished,
+                  const std::filesystem::path& path, const std::filesystem::path& earlier) {
+  calibrate::print_report(std::cout, finished.fit, finished.readings, finished.sensors,
+                          finished.wearer.left_out);
+  std::cout << "wrote " << printable(path.string()) << '\n';
+  if (!earlier.empty())
+    std::cout << "the previous one is kept as " << printable(earlier.string()) << '\n';
+  if (options.picture.empty()) return 0;
+  const auto drawn = calibrate::write_report_picture(options.picture, finished.fit, finished.wearer,
+                                                     finished.sensors);
+  if (!drawn) return cli::report(drawn.error());
+  report_written(options.picture);
+  return 0;
+}
+
 int fit_and_write(const Options& options, const calibrate::WearerFile& file,
                   const calibrate::CalibrationGuide& guide) {
   const auto finished = file.fit(guide);
   if (!finished) return cli::report(finished.error());
-  calibrate::print_report(std::cout, finished->fit, finished->readings, finished->sensors,
-                          guide.left_out());
   const auto earlier = file.write(*finished);
   if (!earlier) return cli::report(earlier.error());
-  std::cout << "wrote " << printable(file.path().string()) << '\n';
-  if (!earlier->empty())
-    std::cout << "the previous one is kept as " << printable(earlier->string()) << '\n';
-  if (options.picture.empty()) return 0;
-  const auto drawn = calibrate::write_report_picture(options.picture, finished->fit,
-                                                     finished->wearer, finished->sensors);
-  if (!drawn) return cli::report(drawn.error());
-  report_written(options.picture);
-  return 0;
+  return report_result(options, *finished, file.path(), *earlier);
 }
 
 /// Returns the sensors that are found stuck anywhere in a capture.
@@ -159,15 +174,51 @@ int calibrate_from_capture(const Options& options) {
   return fit_and_write(options, *file, guide);
 }
 
+void note_kept(std::size_t poses) {
+  if (poses == 0) return;
+  cli::note((poses == 1 ? "1 pose is" : std::to_string(poses) + " poses are") +
+            " kept; the same command continues from there, or with --fresh from the beginning");
+}
+
 /// Keeps the recorded poses, so that the same command continues from there.
 int keep_for_later(const calibrate::WearerFile& file, const calibrate::CalibrationGuide& guide) {
   const auto kept = file.keep(guide);
   if (!kept) return cli::report(kept.error());
-  if (*kept == 0) return 0;
-  cli::note((*kept == 1 ? "1 pose is" : std::to_string(*kept) + " poses are") +
-            " kept; the same command continues from there, or with --fresh from the beginning");
+  note_kept(*kept);
   return 0;
 }
+
+#ifdef NENDO_WINDOW
+int calibrate_in_window(const Options& options) {
+  auto window = viewer::SceneWindow::open(
+      "Nendo", {}, "on a box without a screen calibrate at a terminal, without --view");
+  if (!window) return cli::report(window.error());
+  const auto glove = gloves::open_glove(options.glove);
+  if (!glove) return cli::report(glove.error());
+  studio::CalibrationScreen screen(**glove, request_of(options), options.fresh);
+  if (const auto started = screen.start(); !started) return cli::report(started.error());
+  std::optional<Result<studio::CalibrationOutcome>> outcome;
+  while (!outcome) {
+    if (cli::stop_requested()) screen.leave();
+    outcome = screen.show(**window);
+  }
+  if (!*outcome) return cli::report(outcome->error());
+  const studio::CalibrationOutcome& result = **outcome;
+  note_kept(result.kept);
+  if (!result.finished) return 0;
+  note_left_out(options.glove, result.finished->wearer.left_out);
+  const int code = report_result(options, *result.finished, result.written, result.earlier);
+  if (result.adapt)
+    cli::note("to keep learning while you work: nendo run --adapt --user " +
+              printable(result.finished->wearer.user));
+  return code;
+}
+#else
+int calibrate_in_window(const Options&) {
+  return cli::report({Errc::failed, "--view: this nendo was built without a window; calibrate at a "
+                                    "terminal, without --view"});
+}
+#endif
 
 int calibrate_glove(const Options& options) {
   const auto glove = gloves::open_glove(options.glove);
@@ -195,6 +246,7 @@ int calibrate(Options& options) {
   if (!stiff) return cli::report(stiff.error());
   options.stiff_sensors = *stiff;
   if (const auto fine = check(options); !fine) return cli::report(fine.error());
+  if (options.view) return calibrate_in_window(options);
   return options.from.empty() ? calibrate_glove(options) : calibrate_from_capture(options);
 }
 
@@ -224,6 +276,9 @@ void nendo::app::add_calibrate(cli::Command& program) {
   command.add_option("--out", options.out,
                      "Where to write the calibration; without it, where other commands find it");
   command.add_option("--picture", options.picture, "Also draw ranges and residuals, as FILE.svg");
+  command.add_flag("--view", options.view,
+                   "In a window instead of the terminal, with a hand to follow, and a try at the "
+                   "end; asks for what is not given");
   command.add_flag("--fresh", options.fresh, "Do not continue a session that was quit");
   std::string footer = "The poses, in their order:\n";
   for (const auto id : hand::full_poses())

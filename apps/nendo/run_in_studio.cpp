@@ -28,6 +28,10 @@ RunArguments arguments_for(const studio::Shape& shape, const RunArguments& first
   if (!shape.model.empty()) next.models = {shape.model};
   if (!shape.mode.empty()) next.settings.choose(flow::setting::mode, shape.mode);
   next.run.puppet_file = shape.puppet;
+  if (!shape.learns_for.empty()) {
+    next.run.calibration.adapt = true;
+    next.run.calibration.user = shape.learns_for;
+  }
   const bool is_still = shape.hands == studio::Hands::still;
   if (shape.hands == studio::Hands::found) return next;
   next.run.left = is_still ? "sim:rest" : shape.puppet.empty() ? "sim" : "sim:faces";

@@ -203,6 +203,12 @@ void StartScreen::draw_hands(const viewer::SceneWindow& window, Wish& wish) {
   ImGui::End();
 }
 
+std::string StartScreen::found_glove() const {
+  for (const DeviceCard& card : board_.cards())
+    if (card.side && card.state == DeviceCard::State::streaming) return card.spec;
+  return {};
+}
+
 Wish StartScreen::show(viewer::SceneWindow& window) {
   Wish wish;
   board_.update();

@@ -30,6 +30,8 @@ public:
   Wish show(viewer::SceneWindow& window);
   /// Returns whether the pictures of the models are drawn.
   bool is_complete() const { return gallery_.is_complete(); }
+  /// Returns the GLOVE of the first glove that streams; empty: none.
+  std::string found_glove() const;
 
 private:
   struct Model {

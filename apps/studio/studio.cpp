@@ -10,6 +10,7 @@
 #include "cli/model_files.hpp"
 #include "session/kept_state.hpp"
 #include "studio/bar.hpp"
+#include "studio/calibration_visit.hpp"
 #include "studio/start_screen.hpp"
 #include "studio/studio_view.hpp"
 #include "studio/timeline_screen.hpp"
@@ -31,12 +32,13 @@ public:
   }
 
   std::optional<Shape> choose() override {
-    if (auto shape = std::exchange(next_, std::nullopt)) return shape;
     while (!is_over_ && !cli::stop_requested() && !next_)
       show_one();
     // Before its pictures go.
     if (!options_.view.screenshot.empty() && !next_) last_picture_ = window_->screenshot();
     start_.reset(); // closes its gloves, which the run opens
+    calibration_.reset();
+    if (next_) next_->learns_for = learns_for_;
     return std::exchange(next_, std::nullopt);
   }
 
@@ -70,7 +72,9 @@ private:
     const bool is_timeline = screen_ == Screen::timeline && timeline_;
     bar_.set({screen_, is_timeline ? timeline_->file() : "",
               is_timeline && timeline_->is_modified(), false});
-    Wish wish = is_timeline ? show_timeline() : show_start();
+    const Wish wish = is_timeline    ? show_timeline()
+                      : calibration_ ? show_calibration()
+                                     : show_start();
     const Wish of_bar = bar_.take_wish();
     follow(is_wish(of_bar) ? of_bar : wish);
     if (window_->take_close_request()) is_over_ = true;
@@ -100,8 +104,32 @@ private:
     return Go{Screen::start};
   }
 
+  Wish show_calibration() {
+    const auto wish = calibration_->show(*window_);
+    if (!wish) bar_.show_error(wish.error().message);
+    if (wish && !is_wish(*wish)) return {};
+    learns_for_ = calibration_->learns_for();
+    calibration_.reset();
+    return Go{Screen::start};
+  }
+
+  /// Calibrates this glove, or if none is named, the one that is there.
+  void calibrate(std::string glove) {
+    for (const std::string& named : options_.gloves)
+      if (glove.empty()) glove = named;
+    if (glove.empty() && start_) glove = start_->found_glove();
+    start_.reset(); // closes it
+    screen_ = Screen::start;
+    if (glove.empty())
+      return bar_.show_error("No glove is here to calibrate. Plug one in, and choose Calibrate "
+                             "beside its hand.");
+    screen_ = Screen::calibration;
+    calibration_ = std::make_unique<CalibrationVisit>(*window_, glove);
+  }
+
   void open_timeline(const std::string& file) {
     start_.reset();
+    calibration_.reset();
     timeline_ = std::make_unique<TimelineScreen>(window_, file);
     screen_ = Screen::timeline;
   }
@@ -117,8 +145,10 @@ private:
     if (there.screen == Screen::shaping) next_ = Shape{};
     if (there.screen == Screen::puppet) next_ = Shape{{}, {}, "face"};
     if (there.screen == Screen::timeline) open_timeline("");
-    if (there.screen == Screen::start || there.screen == Screen::calibration)
-      screen_ = Screen::start;
+    if (there.screen == Screen::calibration) calibrate(there.glove);
+    if (there.screen != Screen::start) return;
+    calibration_.reset();
+    screen_ = Screen::start;
   }
 
   void open(const std::string& file) {
@@ -136,9 +166,11 @@ private:
   Bar bar_;
   std::unique_ptr<StartScreen> start_;
   std::unique_ptr<TimelineScreen> timeline_;
+  std::unique_ptr<CalibrationVisit> calibration_;
   std::unique_ptr<StudioView> view_;
   Screen screen_ = Screen::start;
   std::optional<Shape> next_;
+  std::string learns_for_; ///< as in Shape
   std::optional<render::Image> last_picture_;
   std::uint32_t shown_ = 0;
   bool is_over_ = false;

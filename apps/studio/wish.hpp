@@ -23,6 +23,7 @@ struct Shape {
   std::string mode{};   ///< by its name (flow::mode_names); empty: the usual one
   std::string puppet{}; ///< a puppet's file, which may be new, or a shipped puppet; empty: none
   Hands hands = Hands::found;
+  std::string learns_for{}; ///< the wearer of whose gloves it goes on learning; empty: nobody
 };
 /// Another screen.
 struct Go {

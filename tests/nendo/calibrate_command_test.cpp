@@ -311,6 +311,10 @@ TEST_SUITE("calibrate") {
     refused({"sim", "--from", "x", "--user", "a"}, 2, "GLOVE");
     refused({"sim"}, 2, "--user");
     refused({"sim", "--user", "a"}, 2, "terminal");
+    refused({"--from", "x", "--view"}, 2, "--view");
+    ::unsetenv("DISPLAY");
+    ::unsetenv("WAYLAND_DISPLAY");
+    refused({"sim", "--view"}, 1, "--view");
     refused({"--from", "x", "--user", "a", "--hand-length", "0.19"}, 2, "--hand-length");
     refused({"--from", "x", "--user", "a", "--hand-breadth", "nan"}, 2, "--hand-breadth");
     refused({"--from", "x", "--user", "a", "--stiff", "thumb,toe"}, 2, "--stiff thumb,toe");

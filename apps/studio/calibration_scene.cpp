@@ -1,0 +1,247 @@
+#include "studio/calibration_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace nendo::studio {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using hand::Joint;
+using hand::PoseId;
+using render::Material;
+using render::Surface;
+
+// Linear colours.
+const Material live_skin{{0.52F, 0.42F, 0.36F}, 0.10F};
+const Material wrong_skin{{0.80F, 0.16F, 0.02F}, 0.10F};
+const Material right_skin{{0.10F, 0.50F, 0.12F}, 0.10F};
+const Material shell{{0.10F, 0.28F, 0.62F}, 0.0F, 0.20F, 0.75F, 0.0F, 0.0F, false, true};
+const Material glass{{0.33F, 0.345F, 0.37F}, 0.05F, 0.30F, 0.85F, 0.0F, 0.0F, false, true};
+const Material arrow_colour{{0.95F, 0.30F, 0.02F}, 0.20F, 1.0F, 1.0F, 0.0F, 0.0F, false, true};
+
+constexpr float arrow_width_m = 0.008F;
+constexpr float ball_radius_m = 0.0065F;
+constexpr double hand_height_m = 0.27;    ///< with a part of the forearm
+constexpr double middle_height_m = 0.085; ///< the picture's; the hand's is below
+
+/// Returns the finger whose joints carry a place beyond its knuckle.
+std::optional<std::size_t> finger_of(Joint joint) noexcept {
+  const std::size_t at = index_of(joint);
+  if (at <= index_of(Joint::thumb_metacarpal)) return std::nullopt;
+  if (at <= index_of(Joint::thumb_tip)) return 0;
+  const std::size_t from_index = at - index_of(Joint::index_metacarpal);
+  if (from_index % 5 == 0) return std::nullopt; // in the palm
+  return 1 + from_index / 5;
+}
+
+/// Moves the triangles that belong to marked fingers to another surface.
+Surface split_off(Surface& whole, const std::vector<bool>& is_marked, const Material& material) {
+  constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+  Surface part{{}, {}, {}, material};
+  std::vector<std::uint32_t> place_in_part(whole.places.size(), unused);
+  std::vector<std::uint32_t> rest;
+  for (std::size_t at = 0; at < whole.corners.size(); at += 3) {
+    if (!is_marked[whole.corners[at]]) {
+      rest.insert(rest.end(), &whole.corners[at], &whole.corners[at] + 3);
+      continue;
+    }
+    for (std::size_t corner = at; corner < at + 3; ++corner) {
+      const std::uint32_t from = whole.corners[corner];
+      if (place_in_part[from] == unused) {
+        place_in_part[from] = static_cast<std::uint32_t>(part.places.size());
+        part.places.push_back(whole.places[from]);
+        part.normals.push_back(whole.normals[from]);
+      }
+      part.corners.push_back(place_in_part[from]);
+    }
+  }
+  whole.corners = std::move(rest);
+  return part;
+}
+
+/// Returns where the joint of a sensor is.
+Vector3d place_of(Sensor sensor, const hand::HandPose& pose) {
+  const auto at = [&](Joint joint) -> Vector3d { return pose[joint].translation(); };
+  const auto between = [&](Joint one, Joint other) -> Vector3d {
+    return 0.5 * (at(one) + at(other));
+  };
+  // The web of two fingers, beyond their knuckles.
+  const auto web = [&](Joint one, Joint other) -> Vector3d {
+    return between(one, other) + pose[Joint::wrist].linear() * Vector3d(0.0, 0.0, -0.018);
+  };
+  switch (sensor) {
+  case Sensor::thumb_roll:
+    return at(Joint::thumb_metacarpal);
+  case Sensor::thumb_abduction:
+    return between(Joint::thumb_proximal, Joint::index_proximal);
+  case Sensor::thumb_mcp:
+    return at(Joint::thumb_proximal);
+  case Sensor::thumb_ip:
+    return at(Joint::thumb_distal);
+  case Sensor::index_middle_abduction:
+    return web(Joint::index_proximal, Joint::middle_proximal);
+  case Sensor::middle_ring_abduction:
+    return web(Joint::middle_proximal, Joint::ring_proximal);
+  case Sensor::ring_little_abduction:
+    return web(Joint::ring_proximal, Joint::little_proximal);
+  case Sensor::palm_arch:
+    return between(Joint::little_metacarpal, Joint::little_proximal);
+  case Sensor::wrist_pitch:
+  case Sensor::wrist_yaw: {
+    const double aside_m = sensor == Sensor::wrist_pitch ? -0.012 : 0.012;
+    return pose[Joint::wrist] * Vector3d(aside_m, 0.0, 0.0);
+  }
+  default:
+    break;
+  }
+  for (std::size_t finger = 0; finger < finger_sensors.size(); ++finger)
+    for (std::size_t joint = 0; joint < 3; ++joint)
+      if (finger_sensors[finger][joint] == sensor)
+        return at(joint_after(hand::metacarpals[finger + 1], joint + 1));
+  return at(Joint::palm);
+}
+
+/// As seen by the right hand's wearer: degrees from the view of the own palm towards the view from
+/// the thumb's side.
+struct OwnView {
+  double to_thumb_deg, elevation_deg;
+};
+OwnView own_view_of(PoseId pose) noexcept {
+  switch (pose) {
+  case PoseId::flat:
+  case PoseId::spread:
+  case PoseId::thumb_out:
+  case PoseId::wrist_inwards:
+  case PoseId::wrist_outwards:
+    return {180.0, -8.0}; // the back of a hand on the table
+  case PoseId::table_top:
+  case PoseId::hook:
+  case PoseId::straight_fist:
+  case PoseId::wrist_down:
+  case PoseId::wrist_back:
+    return {68.0, 6.0};
+  case PoseId::thumb_up:
+  case PoseId::pinch_index:
+  case PoseId::pinch_index_flat:
+    return {58.0, 8.0};
+  case PoseId::edge_index:
+    return {100.0, 8.0};
+  case PoseId::edge_little:
+    return {-75.0, 8.0};
+  case PoseId::fist:
+  case PoseId::point:
+  case PoseId::two:
+  case PoseId::three:
+  case PoseId::pinch_middle:
+  case PoseId::pinch_ring:
+    return {38.0, 8.0};
+  case PoseId::thumb_across:
+  case PoseId::thumb_bent:
+  case PoseId::pinch_little:
+    break;
+  }
+  return {18.0, 6.0};
+}
+
+} // namespace
+
+Eigen::Isometry3d upright(const Vector3d& wrist_m) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() << -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, -1.0, 0.0;
+  pose.translation() = wrist_m;
+  return pose;
+}
+
+render::View view_of(PoseId pose, Side side) noexcept {
+  const OwnView own = own_view_of(pose);
+  return {side == Side::right ? own.to_thumb_deg : -own.to_thumb_deg, own.elevation_deg};
+}
+
+render::Camera camera_for(const render::View& view, double width_m, double aspect) noexcept {
+  constexpr double height_part = 0.82; // words are above the hand
+  render::Camera camera;
+  camera.view = view;
+  camera.target = {0.0, middle_height_m, 0.0};
+  const double height_m = std::max(hand_height_m / height_part, width_m / std::max(aspect, 0.2));
+  camera.distance_m = height_m / (2.0 * camera.tangent());
+  return camera;
+}
+
+void turn_towards(render::Camera& camera, const render::View& view, double elapsed_s) noexcept {
+  constexpr double time_constant_s = 0.15;
+  const double share = 1.0 - std::exp(-elapsed_s / time_constant_s);
+  const double turn_deg = std::remainder(view.azimuth_deg - camera.view.azimuth_deg, 360.0);
+  camera.view.azimuth_deg = std::remainder(camera.view.azimuth_deg + share * turn_deg, 360.0);
+  camera.view.elevation_deg += share * (view.elevation_deg - camera.view.elevation_deg);
+}
+
+Surface HandPainter::ghost(const hand::HandPose& pose) const {
+  constexpr float shell_m = 0.0018F; // outside of a hand that is in the pose
+  Surface surface{{}, {}, {}, shell};
+  skin_.drape(pose, Vector3d::Zero(), surface);
+  for (std::size_t at = 0; at < surface.places.size(); ++at)
+    surface.places[at] += shell_m * surface.normals[at];
+  return surface;
+}
+
+std::vector<Surface> HandPainter::live(const hand::HandPose& pose, const Fingers& marked,
+                                       bool is_wrong) const {
+  std::vector<Surface> surfaces{{{}, {}, {}, live_skin}};
+  skin_.drape(pose, Vector3d::Zero(), surfaces[0]);
+  if (std::find(marked.begin(), marked.end(), true) == marked.end()) return surfaces;
+  std::vector<bool> is_marked(surfaces[0].places.size());
+  for (std::size_t at = 0; at < is_marked.size(); ++at) {
+    const auto finger = finger_of(skin_.influences(at)[0].joint);
+    is_marked[at] = finger && marked[*finger];
+  }
+  surfaces.push_back(split_off(surfaces[0], is_marked, is_wrong ? wrong_skin : right_skin));
+  return surfaces;
+}
+
+std::vector<Surface> HandPainter::report(const hand::HandPose& pose,
+                                         const calibrate::FinishedCalibration& finished,
+                                         SensorMask sensors) const {
+  std::vector<Surface> surfaces{{{}, {}, {}, glass}};
+  skin_.drape(pose, Vector3d::Zero(), surfaces[0]);
+  for (const auto certainty : {calibrate::Certainty::sure, calibrate::Certainty::less_sure,
+                               calibrate::Certainty::average, calibrate::Certainty::estimated}) {
+    Surface balls{{}, {}, {}, Material{colour_of(certainty), 0.2F}};
+    for (const Sensor sensor : sensors)
+      if (calibrate::certainty_of(finished, sensor) == certainty)
+        add_sphere(balls, place_of(sensor, pose).cast<float>(), ball_radius_m, 14);
+    if (!balls.is_empty()) surfaces.push_back(std::move(balls));
+  }
+  return surfaces;
+}
+
+Surface arrows(const hand::HandPose& live, const hand::HandPose& asked, const Fingers& marked) {
+  constexpr double visible_m = 0.015;
+  Surface surface{{}, {}, {}, arrow_colour};
+  const auto from = live.fingertip_positions(), to = asked.fingertip_positions();
+  for (std::size_t finger = 0; finger < marked.size(); ++finger) {
+    const auto at = static_cast<Eigen::Index>(finger);
+    if (!marked[finger] || (to.col(at) - from.col(at)).norm() < visible_m) continue;
+    add_arrow(surface, from.col(at).cast<float>(), to.col(at).cast<float>(), arrow_width_m);
+  }
+  return surface;
+}
+
+Vector3f colour_of(calibrate::Certainty certainty) noexcept {
+  switch (certainty) {
+  case calibrate::Certainty::sure:
+    return {0.05F, 0.42F, 0.10F};
+  case calibrate::Certainty::less_sure:
+    return {0.85F, 0.50F, 0.02F};
+  case calibrate::Certainty::average:
+    return {0.30F, 0.30F, 0.32F};
+  case calibrate::Certainty::estimated:
+    break;
+  }
+  return {0.70F, 0.04F, 0.03F};
+}
+
+} // namespace nendo::studio
