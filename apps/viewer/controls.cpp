@@ -53,10 +53,8 @@ void label(std::string_view text) {
 void draw_share(float share) {
   const ImVec2 low = ImGui::GetCursorScreenPos();
   const float width = std::clamp(share, 0.0F, 1.0F) * ImGui::CalcItemWidth();
-  ImVec4 colour = accent();
-  colour.w = 0.22F;
   ImGui::GetWindowDrawList()->AddRectFilled(low, {low.x + width, low.y + ImGui::GetFrameHeight()},
-                                            ImGui::GetColorU32(colour),
+                                            ImGui::GetColorU32(accent(0.22F)),
                                             ImGui::GetStyle().FrameRounding);
 }
 

@@ -21,38 +21,20 @@ struct StripLook {
   std::optional<Retiming> shaded; ///< highlighted times
 };
 
+ImU32 of_style(ImGuiCol item) {
+  return ImGui::GetColorU32(item);
+}
+
+/// The theme's.
 struct StripColours {
-  ImU32 ground, lane_ground, line, words, computed, not_computed, key_colour, key_edge,
-      pointed_colour, selected_colour, selected_edge, mark_colour, head_colour, shade;
+  ImU32 ground = of_style(ImGuiCol_WindowBg), lane_ground = of_style(ImGuiCol_FrameBg);
+  ImU32 line = of_style(ImGuiCol_Border), words = of_style(ImGuiCol_Text);
+  ImU32 computed = of_style(ImGuiCol_PlotHistogram), not_computed = line;
+  ImU32 key_colour = computed, key_edge = of_style(ImGuiCol_PopupBg), pointed_colour = words;
+  ImU32 selected_colour = ImGui::GetColorU32(accent()), selected_edge = words;
+  ImU32 mark_colour = of_style(ImGuiCol_TextDisabled);
+  ImU32 head_colour = selected_colour, shade = ImGui::GetColorU32(accent(0.16F));
 };
-constexpr StripColours light_strip{.ground = IM_COL32(243, 244, 246, 255),
-                                   .lane_ground = IM_COL32(228, 231, 235, 255),
-                                   .line = IM_COL32(201, 207, 212, 255),
-                                   .words = IM_COL32(60, 68, 76, 255),
-                                   .computed = IM_COL32(70, 150, 140, 255),
-                                   .not_computed = IM_COL32(205, 209, 214, 255),
-                                   .key_colour = IM_COL32(110, 145, 190, 255),
-                                   .key_edge = IM_COL32(250, 251, 252, 255),
-                                   .pointed_colour = IM_COL32(70, 110, 165, 255),
-                                   .selected_colour = IM_COL32(226, 125, 20, 255),
-                                   .selected_edge = IM_COL32(90, 50, 10, 255),
-                                   .mark_colour = IM_COL32(132, 110, 10, 255),
-                                   .head_colour = IM_COL32(200, 62, 40, 255),
-                                   .shade = IM_COL32(226, 125, 20, 46)};
-constexpr StripColours dark_strip{.ground = IM_COL32(27, 29, 33, 255),
-                                  .lane_ground = IM_COL32(38, 41, 47, 255),
-                                  .line = IM_COL32(66, 70, 78, 255),
-                                  .words = IM_COL32(200, 204, 210, 255),
-                                  .computed = IM_COL32(70, 150, 140, 255),
-                                  .not_computed = IM_COL32(58, 60, 66, 255),
-                                  .key_colour = IM_COL32(150, 180, 215, 255),
-                                  .key_edge = IM_COL32(20, 22, 26, 255),
-                                  .pointed_colour = IM_COL32(205, 222, 242, 255),
-                                  .selected_colour = IM_COL32(255, 160, 40, 255),
-                                  .selected_edge = IM_COL32(255, 240, 215, 255),
-                                  .mark_colour = IM_COL32(205, 190, 110, 255),
-                                  .head_colour = IM_COL32(235, 95, 70, 255),
-                                  .shade = IM_COL32(255, 160, 40, 38)};
 
 class StripDrawing {
 public:
@@ -205,7 +187,7 @@ private:
   const StripLook& look_;
   ImDrawList& list_;
   const float scale_ = scale();
-  const StripColours& colours_ = is_dark() ? dark_strip : light_strip;
+  const StripColours colours_;
 };
 
 constexpr float controls_em = 2.4F;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <utility>
+#include <vector>
 
 #include <nendo/flow/setting.hpp>
 
@@ -18,32 +19,18 @@
 namespace nendo::viewer {
 
 using flow::Request;
-using hand::Joint;
 
 namespace {
 
 constexpr float gap_em = 0.7F; // from the window's edges
 constexpr float width_em = 19.0F;
 
-// How far two joints that follow each other are turned, degrees.
-float bend_deg(const hand::HandPose& pose, Joint from, Joint to) {
-  const Eigen::Matrix3d turn = pose[from].linear().transpose() * pose[to].linear();
-  const double cosine = std::clamp((turn.trace() - 1.0) / 2.0, -1.0, 1.0);
-  return static_cast<float>(to_degrees(std::acos(cosine)));
-}
-
-// Three joints a finger, from its root.
-std::array<float, 15> bends_of(const hand::HandPose& pose) {
-  std::array<float, 15> bends{};
-  bends[0] = bend_deg(pose, Joint::wrist, Joint::thumb_metacarpal);
-  bends[1] = bend_deg(pose, Joint::thumb_metacarpal, Joint::thumb_proximal);
-  bends[2] = bend_deg(pose, Joint::thumb_proximal, Joint::thumb_distal);
-  for (std::size_t finger = 1; finger < 5; ++finger) {
-    const std::size_t metacarpal = index_of(Joint::index_metacarpal) + 5 * (finger - 1);
-    for (std::size_t joint = 0; joint < 3; ++joint)
-      bends[3 * finger + joint] = bend_deg(pose, static_cast<Joint>(metacarpal + joint),
-                                           static_cast<Joint>(metacarpal + joint + 1));
-  }
+/// Returns the bends of the joints in degrees, thumb to little finger.
+std::vector<float> bends_of(const hand::JointAngles& angles) {
+  std::vector<float> bends;
+  for (std::size_t at = 0; at < hand::angle_count; ++at)
+    if (const hand::Angle angle = hand::angle_at(at); name_of(angle).ends_with("flexion"))
+      bends.push_back(static_cast<float>(to_degrees(angles[angle])));
   return bends;
 }
 
@@ -197,13 +184,13 @@ void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) {
     for (const std::string& line : gauges.devices[slot])
       ImGui::TextUnformatted(line.c_str());
     ImGui::PopTextWrapPos();
-    const auto bends = bends_of(hand.pose);
+    const auto bends = bends_of(hand.angles);
     ImGui::PushID(static_cast<int>(slot));
     ImGui::PlotHistogram("##joints", bends.data(), static_cast<int>(bends.size()), 0,
                          "thumb to little, degrees", 0.0F, 110.0F,
                          ImVec2(ImGui::GetContentRegionAvail().x, em(3.4F)));
     ImGui::PopID();
-    show_text("How far each joint is bent, three of each finger.");
+    show_text("How far joints are bent: two of the thumb, three of each finger.");
   }
 }
 

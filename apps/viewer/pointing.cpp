@@ -23,6 +23,18 @@ std::optional<Vector2d> pixel_of(const render::Camera& camera, const Vector3d& p
                   (1.0 - in_picture.y()) / 2 * size.height);
 }
 
+std::optional<NearPlace> nearest_in_picture(const render::Camera& camera,
+                                            const Eigen::Ref<const deform::Points>& places,
+                                            const Vector2d& pointer, render::Size size,
+                                            double reach_px) noexcept {
+  std::optional<NearPlace> nearest;
+  for (Eigen::Index at = 0; at < places.cols(); ++at)
+    if (const auto pixel = pixel_of(camera, places.col(at), size))
+      if (const double px = (*pixel - pointer).norm(); px < (nearest ? nearest->px : reach_px))
+        nearest = NearPlace{at, px};
+  return nearest;
+}
+
 Vector3d way_in_picture(const render::Camera& camera, const Vector3d& place, double dx, double dy,
                         double height) noexcept {
   const Eigen::Matrix3d rows = camera.axes();
@@ -107,13 +119,14 @@ void HandMover::take(const render::Camera& camera, const flow::Frame& frame,
   for (std::size_t slot = 0; slot < frame.hands.size(); ++slot) {
     const auto& hand = frame.hands[slot];
     if (!hand.present) continue;
-    for (const auto& joint : hand.pose.joints) {
-      const auto pixel = pixel_of(camera, joint.translation(), size);
-      if (!pixel || !((*pixel - pointer).norm() < nearest)) continue;
-      nearest = (*pixel - pointer).norm();
-      slot_ = slot;
-      wrist_ = hand.T_stage_wrist;
-    }
+    Eigen::Matrix<double, 3, hand::joint_count> places;
+    for (std::size_t joint = 0; joint < hand::joint_count; ++joint)
+      places.col(static_cast<Eigen::Index>(joint)) = hand.pose.joints[joint].translation();
+    const auto found = nearest_in_picture(camera, places, pointer, size, nearest);
+    if (!found) continue;
+    nearest = found->px;
+    slot_ = slot;
+    wrist_ = hand.T_stage_wrist;
   }
   // About what is looked at: a model need not be in the stage's middle. A hand that is farther
   // away already stays where it is.
@@ -152,16 +165,8 @@ std::optional<hand::Finger> TipMover::tip_at(const render::Camera& camera,
                                              const hand::HandPose& pose,
                                              const Eigen::Vector2d& pointer,
                                              render::Size size) noexcept {
-  std::optional<hand::Finger> found;
-  double nearest = reach;
-  const auto tips = pose.fingertip_positions();
-  for (Eigen::Index finger = 0; finger < tips.cols(); ++finger) {
-    const auto pixel = pixel_of(camera, tips.col(finger), size);
-    if (!pixel || !((*pixel - pointer).norm() < nearest)) continue;
-    nearest = (*pixel - pointer).norm();
-    found = static_cast<hand::Finger>(finger);
-  }
-  return found;
+  const auto tip = nearest_in_picture(camera, pose.fingertip_positions(), pointer, size, reach);
+  return tip ? std::optional(static_cast<hand::Finger>(tip->at)) : std::nullopt;
 }
 
 void TipMover::take(const hand::HandPose& pose, hand::Finger finger) noexcept {

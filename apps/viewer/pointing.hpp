@@ -21,6 +21,16 @@ namespace nendo::viewer {
 std::optional<Eigen::Vector2d> pixel_of(const render::Camera& camera, const Eigen::Vector3d& place,
                                         render::Size size) noexcept;
 
+struct NearPlace {
+  Eigen::Index at = 0;
+  double px = 0.0; ///< its distance from the pointer in the picture
+};
+/// Returns the place that is nearest to the pointer in the picture, of those within `reach_px`.
+std::optional<NearPlace> nearest_in_picture(const render::Camera& camera,
+                                            const Eigen::Ref<const deform::Points>& places,
+                                            const Eigen::Vector2d& pointer, render::Size size,
+                                            double reach_px) noexcept;
+
 /// Returns the displacement in metres that moves `place` by these pixels in the picture while
 /// its depth stays the same. `height` is the picture's height in pixels.
 Eigen::Vector3d way_in_picture(const render::Camera& camera, const Eigen::Vector3d& place,

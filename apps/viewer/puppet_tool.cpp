@@ -74,24 +74,18 @@ void draw_way(ImDrawList& list, const Vector2d& from, const Vector2d& to, ImU32 
 /// Returns the point whose mark is under the pointer; PuppetEditor::none.
 std::size_t point_at(const PuppetEditor& editor, const render::Camera& stage_camera,
                      render::Size size, double units_per_metre, const Vector2d& pointer) {
-  std::size_t nearest = PuppetEditor::none;
-  double least = reach_px;
-  const deform::Points& starts = editor.rig().starts();
-  for (Index at = 0; at < starts.cols(); ++at) {
-    const auto pixel = pixel_of(stage_camera, starts.col(at) / units_per_metre, size);
-    if (!pixel || (*pixel - pointer).norm() >= least) continue;
-    least = (*pixel - pointer).norm();
-    nearest = static_cast<std::size_t>(at);
-  }
-  return nearest;
+  const auto found = nearest_in_picture(stage_camera, editor.rig().starts() / units_per_metre,
+                                        pointer, size, reach_px);
+  return found ? static_cast<std::size_t>(found->at) : PuppetEditor::none;
 }
 
 /// Returns whether the mark of the place that waits for its finger is under the pointer.
 bool is_at_pending(const PuppetEditor& editor, const render::Camera& stage_camera,
                    render::Size size, double units_per_metre, const Vector2d& pointer) {
   if (!editor.pending()) return false;
-  const auto pixel = pixel_of(stage_camera, editor.pending()->at / units_per_metre, size);
-  return pixel && (*pixel - pointer).norm() < reach_px;
+  return nearest_in_picture(stage_camera, editor.pending()->at / units_per_metre, pointer, size,
+                            reach_px)
+      .has_value();
 }
 
 /// Turns the chosen function by the way of the mouse.

@@ -23,11 +23,11 @@ constexpr double spacing = 0.0625; // of a radius
 constexpr int column_step = 6, row_step = 6;
 constexpr std::size_t drawn_rows = 1 + (rows - 1) / row_step;
 
-/// Smooth and flatten get a surface to work on.
-double height_before(Brush brush, double x, double y) {
-  constexpr double ripple = 0.1, wave = 2.0 * 3.14159265358979 / (6.0 * spacing);
-  if (brush == Brush::smooth) return ripple * std::cos(wave * x);
-  if (brush == Brush::flatten) return 0.45 * std::cos(2.0 * x) * std::cos(2.0 * y);
+/// Smooth and flatten get waves to work on: short ones are rough, and longer ones are kept.
+double height_before(Brush brush, double x) {
+  constexpr double turn = 2.0 * 3.14159265358979;
+  if (brush == Brush::smooth) return 0.12 * std::cos(turn * x / (3.0 * spacing));
+  if (brush == Brush::flatten) return 0.2 * std::cos(turn * x / (16.0 * spacing));
   return 0.0;
 }
 
@@ -37,7 +37,7 @@ deform::Mesh surface_for(Brush brush) {
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
       const double x = spacing * (column - columns / 2), y = spacing * (row - rows / 2);
-      mesh.vertices.col(row * columns + column) = Vector3d(x, y, height_before(brush, x, y));
+      mesh.vertices.col(row * columns + column) = Vector3d(x, y, height_before(brush, x));
     }
   for (int row = 0; row + 1 < rows; ++row)
     for (int column = 0; column + 1 < columns; ++column) {
@@ -49,11 +49,11 @@ deform::Mesh surface_for(Brush brush) {
   return mesh;
 }
 
-/// Pull goes outwards; the others stay about the middle, and go one and a half radii in all.
+/// Pull goes outwards; the others stay about the middle, and go some radii in all.
 void stroke(Brush brush, deform::Type2Deformer& deformer) {
   deform::Points tip = deform::Points::Zero(3, 1);
   deformer.begin(tip);
-  constexpr int moves = 16;
+  const int moves = brush == Brush::smooth || brush == Brush::flatten ? 64 : 16;
   for (int move = 1; move <= moves; ++move) {
     if (brush == Brush::pull)
       tip.col(0).z() = 0.6 * move / moves;
@@ -67,7 +67,7 @@ SurfaceLines shaped_by(Brush brush) {
   const deform::Mesh mesh = surface_for(brush);
   deform::DeformerOptions options;
   options.brushes.of_points = {brush};
-  options.brushes.strength = brush == Brush::push || brush == Brush::inflate ? 0.4 : 0.8;
+  options.brushes.strength = brush == Brush::push || brush == Brush::inflate ? 0.4 : 0.9;
   options.brushes.rings =
       std::make_shared<const deform::VertexRings>(mesh, deform::BlockLayout(mesh.vertices));
   deform::Type2Deformer deformer(mesh.vertices, 1, 0.05, options);
@@ -104,7 +104,7 @@ void draw_brush(ImDrawList& list, ImVec2 low, ImVec2 high, std::size_t brush, Im
   const auto is_any_of = [&](auto... one) { return ((one == static_cast<Brush>(brush)) || ...); };
   const bool from_above = is_any_of(Brush::twist, Brush::scale, Brush::pinch);
   constexpr double half_width = 1.2, half_height = 0.8;
-  const double depth = from_above ? 1.0 : 0.35;
+  const double depth = from_above ? 1.0 : 0.5;
   const SurfaceLines& lines = lines_of(static_cast<Brush>(brush));
   for (std::size_t number = 0; number < (from_above ? lines.size() : drawn_rows); ++number) {
     ImVec2 before;

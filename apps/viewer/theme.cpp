@@ -139,8 +139,8 @@ bool is_dark() {
   return palette().text == dark.text;
 }
 
-ImVec4 accent() {
-  return colour(palette().accent);
+ImVec4 accent(float opacity) {
+  return colour(palette().accent, opacity);
 }
 
 ImVec4 warning() {

@@ -26,7 +26,7 @@ float scale();
 /// Returns whether the theme is dark.
 bool is_dark();
 /// Returns the colour that marks what is chosen.
-ImVec4 accent();
+ImVec4 accent(float opacity = 1.0F);
 /// Returns the colour of a warning.
 ImVec4 warning();
 

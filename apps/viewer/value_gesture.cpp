@@ -15,12 +15,6 @@ namespace {
 
 constexpr float disc_em = 5.0F; // the radius of the disc at the range's end
 
-ImU32 accent_of(float opacity) {
-  ImVec4 colour = accent();
-  colour.w = opacity;
-  return ImGui::GetColorU32(colour);
-}
-
 } // namespace
 
 void ValueGesture::begin(const Quantity& quantity, std::function<void(double)> use) {
@@ -95,8 +89,10 @@ void ValueGesture::draw() const {
                                                       static_cast<double>(em(disc_em))
                                                 : value_ / quantity_.per_px);
   const float outer = is_disc ? em(disc_em) : inner;
-  list.AddCircleFilled(begun_, inner, accent_of(is_disc ? 0.45F : 0.12F), 96);
-  list.AddCircle(begun_, outer, accent_of(1.0F), 96, 2.0F * scale());
+  list.AddCircleFilled(begun_, inner, ImGui::GetColorU32(accent(is_disc ? 0.45F : 0.12F)), 96);
+  constexpr ImU32 dark = IM_COL32(0, 0, 0, 110), white = IM_COL32(255, 255, 255, 255);
+  list.AddCircle(begun_, outer, dark, 96, 4.0F * scale()); // seen on any ground
+  list.AddCircle(begun_, outer, white, 96, 2.0F * scale());
   const std::string words = value_text();
   const ImVec2 size = ImGui::CalcTextSize(words.c_str()), all = ImGui::GetIO().DisplaySize;
   const float pad = em(0.4F);

@@ -2,6 +2,7 @@
 // What holds for the controls of every window.
 
 #include <cstddef>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -21,6 +22,18 @@ inline void check_controls() {
           shown[at].max.cwiseMin(shown[other].max) - shown[at].min.cwiseMax(shown[other].min);
       CHECK_MESSAGE(overlap.minCoeff() <= 0.0F, shown[other].name);
     }
+  }
+}
+
+/// Checks that each control of the current picture has a tooltip. point(pixel) shows pictures with
+/// the pointer there.
+template <class Point>
+void check_tooltips(const Point& point) {
+  const std::vector<viewer::Control> all(viewer::controls().begin(), viewer::controls().end());
+  for (const viewer::Control& control : all) {
+    CAPTURE(control.name);
+    point(((control.min + control.max) / 2.0F).cast<double>());
+    CHECK(viewer::tooltip().size() > 10);
   }
 }
 

@@ -137,6 +137,10 @@ TEST_SUITE("timeline_window") {
       CHECK(*pressed.select == StripKey{1, 2});
       seat.release();
       test::check_controls();
+      test::check_tooltips([&](const Vector2d& pixel) {
+        seat.move(pixel, false);
+        seat.show();
+      });
     }
   }
 

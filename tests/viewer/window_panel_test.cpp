@@ -332,30 +332,32 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
       person.press(section);
       person.set(person.frame.settings); // the panel grows
     }
+    const auto point = [&](const Eigen::Vector2d& pixel) {
+      SimulatedInput input;
+      input.pointer = pixel;
+      person.hold(input);
+    };
     flow::LoopSettings settings = person.frame.settings;
     settings.brushes.fill(deform::Brush::inflate); // and so a strength
     for (const flow::Mode mode :
          {flow::Mode::type1, flow::Mode::type2, flow::Mode::clay, flow::Mode::parts}) {
       settings.mode = mode;
       person.set(settings);
-      const std::vector<Control> all(controls().begin(), controls().end());
-      CHECK(all.size() > 30);
-      for (const Control& control : all) {
-        CAPTURE(control.name);
-        const Eigen::Vector2f middle = (control.min + control.max) / 2.0F;
-        SimulatedInput input;
-        input.pointer = middle.cast<double>();
-        person.hold(input);
-        CHECK(tooltip().size() > 10);
-        if (control.name == "Undo")
-          CHECK(tooltip().find("There is nothing to undo.") != std::string::npos);
-        if (control.name == "radius") {
-          CHECK(tooltip().find("1 to 40 cm") != std::string::npos);
-          for (const char* keys : {"[: smaller", "]: larger", "f: set radius"})
-            CHECK(tooltip().find(keys) != std::string::npos);
-        }
-      }
+      CHECK(controls().size() > 30);
+      test::check_tooltips(point);
     }
+    settings.mode = flow::Mode::type1;
+    person.set(settings);
+    const auto tooltip_of = [&](const char* name) {
+      const Control& control = *control_named(name);
+      point(((control.min + control.max) / 2.0F).cast<double>());
+      return tooltip();
+    };
+    CHECK(tooltip_of("Undo").find("There is nothing to undo.") != std::string::npos);
+    for (const char* name : {"radius", "label radius"})
+      for (const char* part : {"1 to 40 cm", "[: smaller", "]: larger", "f: set radius"})
+        CHECK(tooltip_of(name).find(part) != std::string::npos);
+    CHECK(tooltip_of("Clay").starts_with("Clay: "));
   }
 
   TEST_CASE("f sets the radii by the pointer's way: a circle on the model, and one change") {
