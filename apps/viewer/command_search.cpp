@@ -7,6 +7,7 @@
 
 #include <nendo/base/endings.hpp>
 
+#include "viewer/command_widgets.hpp"
 #include "viewer/controls.hpp"
 #include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
@@ -30,7 +31,8 @@ bool fits(const commands::Row& row, std::string_view text) {
   return true;
 }
 
-const commands::Row* CommandSearch::draw(std::uint8_t places, const commands::Situation& now) {
+template <class Now>
+const commands::Row* CommandSearch::draw(std::uint8_t places, const Now& now, const char* mouse) {
   if (std::exchange(is_asked_, false)) {
     text_ = {};
     chosen_ = 0;
@@ -60,6 +62,8 @@ const commands::Row* CommandSearch::draw(std::uint8_t places, const commands::Si
     if (ImGui::Selectable((std::string(row.name) + "##row").c_str(), at == chosen_,
                           is_possible ? 0 : ImGuiSelectableFlags_Disabled))
       taken = &row;
+    note_control("found " + std::string(row.name), "");
+    show_help(row, now);
     if (at == chosen_ && ImGui::IsWindowAppearing()) ImGui::SetScrollHereY();
     ImGui::SameLine(em(9.0F));
     ImGui::TextDisabled("%s", commands::keys_of(row).c_str());
@@ -67,9 +71,16 @@ const commands::Row* CommandSearch::draw(std::uint8_t places, const commands::Si
     ImGui::TextDisabled("%s", std::string(row.help).c_str());
   }
   ImGui::EndChild();
+  ImGui::TextDisabled("A capital is typed with shift.\n"
+                      "mouse: drag turns, middle or shift drag shifts, wheel zooms;\n%s",
+                      mouse);
   if (taken != nullptr || pressed(GLFW_KEY_ESCAPE)) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
   return taken;
 }
+template const commands::Row* CommandSearch::draw(std::uint8_t, const commands::Situation&,
+                                                  const char*);
+template const commands::Row* CommandSearch::draw(std::uint8_t, const commands::EditFacts&,
+                                                  const char*);
 
 } // namespace nendo::viewer

@@ -1,5 +1,6 @@
 #pragma once
-// A list of all commands of a window, found by words of their names and their help (F3).
+// A list of all commands of a window with their keys, found by words of their names and their help
+// (F3, ?).
 
 #include <array>
 #include <cstddef>
@@ -13,8 +14,11 @@ namespace nendo::viewer {
 class CommandSearch {
 public:
   void open() noexcept { is_asked_ = true; }
-  /// Draws the list, if it is open. Returns the row that was chosen; null: none.
-  const commands::Row* draw(std::uint8_t places, const commands::Situation& now);
+  /// Draws the list, if it is open, and below it `mouse`, the mouse actions of the window. `now` is
+  /// a commands::Situation or, for a timeline, commands::EditFacts. Returns the row that was
+  /// chosen; null: none.
+  template <class Now>
+  const commands::Row* draw(std::uint8_t places, const Now& now, const char* mouse);
 
 private:
   std::array<char, 64> text_{};

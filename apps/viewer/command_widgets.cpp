@@ -89,6 +89,7 @@ void show_help(const commands::Row& row, const Now& now) {
   show_help(row.name, text);
 }
 template void show_help(const commands::Row&, const commands::Situation&);
+template void show_help(const commands::Row&, const commands::EditFacts&);
 
 void edit_buttons(commands::Buttons group, const commands::EditFacts& now, float width,
                   std::vector<commands::EditCommand>& asked) {
@@ -104,23 +105,6 @@ void edit_buttons(commands::Buttons group, const commands::EditFacts& now, float
 void show_help(std::string_view name, std::string_view text) {
   const commands::Row& row = *commands::named(name);
   show_text(std::string(text.empty() ? row.help : text) + " (" + commands::keys_of(row) + ")");
-}
-
-void draw_key_list(std::uint8_t places, const char* mouse, bool& shown) {
-  const ImVec2 all = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(all.x / 2.0F, all.y / 2.0F), ImGuiCond_Appearing,
-                          ImVec2(0.5F, 0.5F));
-  ImGui::Begin("Keys", &shown, ImGuiWindowFlags_AlwaysAutoResize);
-  for (const commands::Row& row : commands::table())
-    if ((row.places & places) != 0) {
-      ImGui::TextUnformatted(commands::keys_of(row).c_str());
-      ImGui::SameLine(em(10.0F));
-      ImGui::TextUnformatted(row.help.data(), row.help.data() + row.help.size());
-    }
-  ImGui::TextUnformatted("A capital is typed with shift.");
-  ImGui::TextUnformatted("mouse: drag turns, middle or shift drag shifts, wheel zooms;");
-  ImGui::TextUnformatted(mouse);
-  ImGui::End();
 }
 
 } // namespace nendo::viewer

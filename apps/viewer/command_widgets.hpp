@@ -1,5 +1,5 @@
 #pragma once
-// The command table in windows: keys, buttons, and the key list.
+// The command table in windows: keys, buttons and tooltips.
 
 #include <cstdint>
 #include <string_view>
@@ -40,9 +40,5 @@ template <class Now>
 void show_help(const commands::Row& row, const Now& now);
 /// Shows a tooltip with `text`, or else the row's help, and the keys of the row of that name.
 void show_help(std::string_view name, std::string_view text = {});
-
-/// Draws the key list for `places`, then the mouse actions of the camera, then `mouse`, those of
-/// the window. Sets `shown` to false when the user closes the list.
-void draw_key_list(std::uint8_t places, const char* mouse, bool& shown);
 
 } // namespace nendo::viewer

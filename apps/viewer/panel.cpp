@@ -24,6 +24,10 @@ namespace {
 
 constexpr float gap_em = 0.7F; // from the window's edges
 constexpr float width_em = 19.0F;
+constexpr const char* mouse_words =
+    "right drag on a hand moves it, with shift turns it, with the wheel pushes and pulls it;\n"
+    "while a puppet is edited, a click places a point, a drag of a point sets where it goes,\n"
+    "with shift how it turns, the wheel over one how far it reaches";
 
 /// Returns the bends of the joints in degrees, thumb to little finger.
 std::vector<float> bends_of(const hand::JointAngles& angles) {
@@ -199,7 +203,7 @@ void LiveWindow::Panel::sections(const flow::Frame& frame, const Gauges& gauges,
   const commands::Situation now{frame, gauges.facts};
   const auto draw_puppet = [&] {
     if (section("Puppet", "What each finger moves, as points on the model.", true))
-      Panel::puppet(editor, commands);
+      Panel::puppet(editor, frame, commands);
   };
   // While a puppet is edited, nothing is needed as much as this.
   const bool edits = editor.is_on() && !editor.paints_masks();
@@ -297,9 +301,8 @@ void LiveWindow::Panel::begin_gesture(const commands::Row& row, const commands::
 /// Executes a command that concerns the window alone.
 void LiveWindow::Panel::execute(std::string_view name, SceneWindow& window, PuppetEditor& editor,
                                 Commands& commands) {
-  if (name == "list keys") keys_shown = !keys_shown;
-  if (name == "search") search.open();
-  if (name == "frame all") window.frame_all();
+  if (name == "search" || name == "list keys") search.open();
+  window.execute(name);
   if (name == "fold panel") fold_asked = true;
   if (name == "edit puppet") editor.turn(!editor.is_on());
   if (name == "paint masks") editor.is_on() ? editor.toggle_brush() : editor.toggle_masks();
@@ -328,19 +331,12 @@ void LiveWindow::Panel::keys(const commands::Situation& now, SceneWindow& window
   if (gesture.is_on()) {
     gesture.follow(); // which takes all keys
   } else if (takes_keys()) {
-    window.follow_part_keys();
     window.follow_view_keys();
     for (const commands::Row& row : commands::table())
       if ((row.places & commands::in_window) != 0 && is_struck(row)) take(row);
   }
-  if (const commands::Row* const found = search.draw(commands::in_window, now)) take(*found);
-  if (keys_shown)
-    draw_key_list(commands::in_window,
-                  "right drag on a hand moves it, with shift turns it, with the wheel\n"
-                  "pushes and pulls it; while a puppet is edited, a click places a point, a\n"
-                  "drag of a point sets where it goes, with shift how it turns, the wheel over\n"
-                  "one how far it reaches",
-                  keys_shown);
+  if (const commands::Row* const found = search.draw(commands::in_window, now, mouse_words))
+    take(*found);
 }
 
 } // namespace nendo::viewer

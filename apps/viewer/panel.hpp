@@ -40,7 +40,6 @@ struct LiveWindow::Panel {
   CommandSearch search;
   ValueGesture gesture;
   Strip late_ms, gap_ms, pictures_ms;
-  bool keys_shown = false;
   std::uint64_t history_shown = 0; ///< the list's version
   bool fold_asked = false;
   bool folded = false;
@@ -54,7 +53,7 @@ struct LiveWindow::Panel {
   /// Draws the panel, in one window of ImGui.
   void draw(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
             PuppetEditor& editor, Commands& commands);
-  /// Handles keys, and draws their list and the search.
+  /// Handles keys, and draws the list of commands.
   void keys(const commands::Situation& now, SceneWindow& window, PuppetEditor& editor,
             Commands& commands);
 
@@ -69,7 +68,7 @@ private:
   /// Controls symmetry, and masks of fingertips.
   void masks(PuppetEditor& editor, const commands::Situation& now, Commands& commands);
   /// Edits the puppet.
-  static void puppet(PuppetEditor& editor, Commands& commands);
+  static void puppet(PuppetEditor& editor, const flow::Frame& frame, Commands& commands);
   static void clay(const flow::Frame& frame);
   void timing(const flow::Frame& frame) const;
   static void hands(const flow::Frame& frame, const Gauges& gauges);

@@ -98,15 +98,17 @@ void LiveWindow::Panel::masks(PuppetEditor& editor, const commands::Situation& n
   if (editor.brushes()) ImGui::TextWrapped("%s", editor.message().c_str());
 }
 
-void LiveWindow::Panel::puppet(PuppetEditor& editor, Commands& commands) {
+void LiveWindow::Panel::puppet(PuppetEditor& editor, const flow::Frame& frame, Commands& commands) {
   const bool is_on = editor.is_on() && !editor.paints_masks();
   if (button(is_on ? "Play the puppet" : "Edit the puppet", share_of_line(1))) editor.turn(!is_on);
   show_help("edit puppet", "Click, bend a finger, drag: what each finger does.");
   if (!editor.is_on() || editor.paints_masks()) return;
   if (!editor.message().empty()) ImGui::TextWrapped("%s", editor.message().c_str());
   edit_buttons(editor, commands);
-  ImGui::Text("%s, radius %.3g", editor.brushes() ? "brush" : "point",
-              editor.brushes() ? editor.brush_radius() : editor.radius());
+  const double radius = editor.brushes() ? editor.brush_radius() : editor.radius();
+  ImGui::Text("%s, radius %.1f cm", editor.brushes() ? "brush" : "point",
+              100.0 * radius / frame.units_per_metre);
+  show_text("How far it reaches (f, or the wheel over it).");
   choose_finger(editor);
   list_functions(editor);
   name_function(editor);

@@ -13,8 +13,6 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
-#include "commands/commands.hpp"
-#include "viewer/command_widgets.hpp"
 #include "viewer/control_list.hpp"
 #include "viewer/gl_objects.hpp"
 #include "viewer/theme.hpp"
@@ -307,10 +305,6 @@ void SceneWindow::look_at(std::span<const Eigen::Vector3f> points, render::View 
   camera_.centre = covered_part();
 }
 
-void SceneWindow::frame_all() {
-  choose_camera(camera_.view);
-}
-
 void SceneWindow::frame(std::vector<Eigen::Vector3f> points, render::View view) {
   kept_framed_ = Framed{std::move(points), view};
 }
@@ -358,29 +352,36 @@ void SceneWindow::move_camera() {
     kept_framed_.reset();
 }
 
-void SceneWindow::follow_part_keys() {
-  if (!takes_keys()) return;
-  for (const auto& [name, part] : {std::pair{"show hands", &parts_.hands},
-                                   {"show bones", &parts_.bones},
-                                   {"show vectors", &parts_.vectors},
-                                   {"show radii", &parts_.radii},
-                                   {"show contact", &parts_.contacts},
-                                   {"show facets", &facets_}})
-    if (is_struck(*commands::named(name))) *part = !*part;
+namespace {
+
+struct ViewChoice {
+  std::string_view name;   // of its command
+  std::array<int, 2> keys; // also of the number pad
+  render::View view, other;
+};
+constexpr std::array views{
+    ViewChoice{"view front", {GLFW_KEY_1, GLFW_KEY_KP_1}, {0.0, 0.0}, {180.0, 0.0}},
+    ViewChoice{"view right", {GLFW_KEY_3, GLFW_KEY_KP_3}, {90.0, 0.0}, {-90.0, 0.0}},
+    ViewChoice{"view top", {GLFW_KEY_7, GLFW_KEY_KP_7}, {0.0, 90.0}, {0.0, -90.0}},
+};
+
+} // namespace
+
+void SceneWindow::execute(std::string_view name) {
+  if (name == "frame all") choose_camera(camera_.view);
+  for (const auto& [command, part] : {std::pair{"show hands", &parts_.hands},
+                                      {"show bones", &parts_.bones},
+                                      {"show vectors", &parts_.vectors},
+                                      {"show radii", &parts_.radii},
+                                      {"show contact", &parts_.contacts},
+                                      {"show facets", &facets_}})
+    if (name == command) *part = !*part;
+  for (const ViewChoice& choice : views)
+    if (name == choice.name) camera_.view = choice.view;
 }
 
 void SceneWindow::follow_view_keys() {
-  if (!takes_keys()) return;
-  struct ViewKey {
-    std::array<int, 2> keys; // also of the number pad
-    render::View view, other;
-  };
-  constexpr std::array views{
-      ViewKey{{GLFW_KEY_1, GLFW_KEY_KP_1}, {0.0, 0.0}, {180.0, 0.0}},
-      ViewKey{{GLFW_KEY_3, GLFW_KEY_KP_3}, {90.0, 0.0}, {-90.0, 0.0}},
-      ViewKey{{GLFW_KEY_7, GLFW_KEY_KP_7}, {0.0, 90.0}, {0.0, -90.0}},
-  };
-  for (const ViewKey& choice : views)
+  for (const ViewChoice& choice : views)
     for (const int key : choice.keys)
       if (pressed(key)) camera_.view = ImGui::GetIO().KeyCtrl ? choice.other : choice.view;
 }

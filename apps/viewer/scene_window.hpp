@@ -59,14 +59,12 @@ public:
   void add(render::Surface surface);
   /// Orbits, pans and zooms the camera by the mouse, unless it is over a widget.
   void move_camera();
-  /// Moves the camera, without rotation, so that all of the model and the hands is visible.
-  void frame_all();
   /// Chooses a camera that looks from there at these points, metres of the scene, also when the
   /// window's size changes, until the user moves it, or another model is set.
   void frame(std::vector<Eigen::Vector3f> points, render::View view);
-  /// Handles the keys h, b, v, d, 0 and W, which toggle parts of the scene, unless a text field or
-  /// dialog is active.
-  void follow_part_keys();
+  /// Executes a command of the table that shows or hides a part of the scene, looks from a side, or
+  /// shows all of the model and the hands. Ignores others.
+  void execute(std::string_view name);
   /// Handles the keys 1, 3 and 7: views from the front, right and top, with ctrl from the back,
   /// left and bottom, as in Blender.
   void follow_view_keys();

@@ -9,6 +9,7 @@
 #include <imgui.h>
 
 #include "commands/commands.hpp"
+#include "viewer/command_search.hpp"
 #include "viewer/command_widgets.hpp"
 #include "viewer/controls.hpp"
 #include "viewer/dope_sheet_widget.hpp"
@@ -24,8 +25,7 @@ constexpr const char* question = "Unsaved changes";
 constexpr const char* mouse_words =
     "drag on the strip scrubs, wheel zooms it, middle drag shifts it;\n"
     "a key: click selects, drag moves, ctrl drag copies;\n"
-    "a ringed fingertip: drag bends the finger, with the wheel\n"
-    "away and back";
+    "a ringed fingertip: drag bends the finger, with the wheel away and back";
 
 void seconds(const char* label, double& value_s, double head_s) {
   ImGui::PushID(label);
@@ -59,7 +59,8 @@ struct TimelineWindow::Panel {
   TipMover tips;
   Retiming retiming{0.0, 0.0, 2.0};
   bool retiming_shown = false;
-  bool keys_shown = false;
+  CommandSearch search;
+  bool leaves = false;
   float blend = 0.0F;
   bool blends = false; ///< the mouse holds the slider
 
@@ -88,29 +89,29 @@ struct TimelineWindow::Panel {
     ImGui::End();
   }
 
-  /// What keys do. It also draws their list.
-  void keys(SceneWindow& window, EditActions& actions) {
+  /// Handles keys, and draws the list of commands.
+  void keys(const TimelineView& view, SceneWindow& window, EditActions& actions) {
+    const auto take = [&](const commands::Row& row) {
+      if (row.name == "search" || row.name == "list keys") search.open();
+      window.execute(row.name);
+      // The same stroke of Esc may have cancelled a drag.
+      if (row.edit && !(row.edit->command == EditCommand::select_none && actions.drop))
+        actions.commands.push_back(row.edit->command);
+      if (row.name == "end edit") leaves = true;
+    };
     if (takes_keys()) {
-      window.follow_part_keys();
       window.follow_view_keys();
-      for (const commands::Row& row : commands::table()) {
-        if ((row.places & commands::in_timeline) == 0 || !is_struck(row)) continue;
-        if (row.name == "list keys") keys_shown = !keys_shown;
-        if (row.name == "frame all") window.frame_all();
-        if (!row.edit) continue;
-        const EditCommand asked = row.edit->command;
-        // The same stroke of Esc has cancelled a drag.
-        if (asked == EditCommand::select_none && actions.drop) continue;
-        actions.commands.push_back(asked);
-      }
+      for (const commands::Row& row : commands::table())
+        if ((row.places & commands::in_timeline) != 0 && is_struck(row)) take(row);
     }
-    if (keys_shown) draw_key_list(commands::in_timeline, mouse_words, keys_shown);
+    if (const auto* const found = search.draw(commands::in_timeline, view.facts, mouse_words))
+      take(*found);
   }
 
-  /// Quits if `wanted` or the key for it is pressed. If there are unsaved changes, it asks first.
+  /// Quits if it is `wanted` here or by the key. If there are unsaved changes, it asks first.
   void leave(const TimelineView& view, bool wanted, EditActions& actions) {
     const bool open = ImGui::IsPopupOpen(question);
-    wanted = wanted || (takes_keys() && is_struck(*commands::named("end edit")));
+    wanted = std::exchange(leaves, false) || wanted;
     if (wanted && !view.modified) actions.quit = true;
     if (wanted && view.modified && !open) ImGui::OpenPopup(question);
     if (!begin_question(question)) return;
@@ -206,7 +207,7 @@ EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFr
   panel_->strip.draw(view, panel_->retiming_shown ? std::optional(panel_->retiming) : std::nullopt,
                      actions);
   panel_->draw(view, window_->above_px(), actions);
-  panel_->keys(*window_, actions);
+  panel_->keys(view, *window_, actions);
   panel_->leave(view, window_->take_close_request(), actions);
   window_->end_picture();
   return actions;

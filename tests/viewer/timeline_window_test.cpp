@@ -282,19 +282,31 @@ TEST_SUITE("timeline_window") {
     CHECK(seat.window->scene_window().camera().distance_m == doctest::Approx(framed.distance_m));
   }
 
-  TEST_CASE("the list of keys stays while Ctrl is down") {
+  TEST_CASE("? and F3 list the commands, which a click gives, and grey ones say why") {
     const Desk desk;
     if (!desk.seat) return;
     Seat& seat = *desk.seat;
-    const Image without = seat.window->scene_window().screenshot();
-    seat.type(GLFW_KEY_SLASH);
-    seat.show();
-    const Image with = seat.window->scene_window().screenshot();
-    CHECK(with.pixels() != without.pixels());
-    seat.input.control = true;
-    seat.window->scene_window().simulate(seat.input);
-    seat.show();
-    CHECK(seat.window->scene_window().screenshot().pixels() == with.pixels());
+    const auto row = [](const std::string& name) -> std::optional<Vector2d> {
+      for (const Control& control : controls())
+        if (control.name == "found " + name)
+          return ((control.min + control.max) / 2.0F).cast<double>();
+      return std::nullopt;
+    };
+    for (const int key : {GLFW_KEY_SLASH, GLFW_KEY_F3}) {
+      CHECK_FALSE(row("play"));
+      CHECK(seat.type(key).commands.empty());
+      for (int picture = 0; picture < 3; ++picture)
+        seat.show();
+      REQUIRE(row("play"));
+      seat.input.control = true; // which closes nothing
+      seat.move(*row("copy key"), false);
+      seat.show();
+      CHECK(tooltip().find("No key is selected") != std::string::npos);
+      seat.input.control = false;
+      seat.press(*row("play"));
+      CHECK(seat.release().commands == std::vector{EditCommand::play});
+      seat.show();
+    }
   }
 
   TEST_CASE("a key that was down only between two pictures counts, and twice if it was twice") {

@@ -430,6 +430,30 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     CHECK(person.window->message() == commands::no_strength);
   }
 
+  TEST_CASE("f sets the radius of what paints masks, in each mode, and not that of fingertips") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Person person;
+    PuppetEditor& editor = person.window->editor();
+    editor.begin(person.test.model, "ball.obj", nullptr);
+    editor.toggle_masks();
+    person.frame.settings.mode = flow::Mode::clay;
+    person.set(person.frame.settings);
+    const double before_cm = 100.0 * editor.brush_radius() / person.frame.units_per_metre;
+    SimulatedInput input;
+    input.pointer = {500.0, 300.0};
+    input.taps = {GLFW_KEY_F};
+    CHECK(person.hold(input).empty());
+    CHECK(std::abs(std::stod(person.window->message().substr(7)) - before_cm) < 0.06);
+    input.text = U"2";
+    CHECK(person.hold(input).empty());
+    CHECK(100.0 * editor.brush_radius() / person.frame.units_per_metre ==
+          doctest::Approx(before_cm));
+    input.taps = {GLFW_KEY_ENTER};
+    CHECK(person.hold(input).empty());
+    CHECK(100.0 * editor.brush_radius() / person.frame.units_per_metre == doctest::Approx(2.0));
+  }
+
   TEST_CASE("F sets the strength of brushes, and modes without radii or strengths refuse") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
@@ -529,6 +553,14 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     }
     const Commands asked = person.type(GLFW_KEY_ENTER);
     CHECK(asked == Commands{flow::Subdivide{}});
+    const bool had_bones = person.window->scene_window().parts().bones; // not a command of the run
+    person.type(GLFW_KEY_F3);
+    for (int picture = 0; picture < 3; ++picture)
+      person.window->show(person.frame, false, person.gauges);
+    words.text = U"bones";
+    person.give(words);
+    CHECK(person.type(GLFW_KEY_ENTER).empty());
+    CHECK(person.window->scene_window().parts().bones == !had_bones);
     CHECK(person.type(GLFW_KEY_G) == Commands{Request::grab}); // the list has closed
   }
 }
