@@ -43,11 +43,6 @@ Vector3d way_in_picture(const render::Camera& camera, const Vector3d& place, dou
   return metres * (dx * rows.row(0) - dy * rows.row(1)).transpose();
 }
 
-Vector3d way_by_wheel(const render::Camera& camera, double steps) noexcept {
-  constexpr double step_m = 0.01;
-  return -step_m * std::clamp(steps, -20.0, 20.0) * camera.axes().row(2).transpose();
-}
-
 namespace {
 
 /// Möller and Trumbore (1997). Returns how far along the ray the triangle is; nothing if the ray
@@ -103,14 +98,25 @@ std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray,
   return hit;
 }
 
-namespace {
+void PlaceMover::begin(const Vector3d& place_m, const Vector3d& middle_m) noexcept {
+  const Vector3d reach_m = Vector3d::Constant(2.0);
+  place_m_ = place_m;
+  lowest_m_ = place_m.cwiseMin(middle_m - reach_m);
+  highest_m_ = place_m.cwiseMax(middle_m + reach_m);
+}
 
-// Of the wrist from the middle of the picture, on each axis: as far as arms reach.
-constexpr double max_reach_m = 2.0;
-constexpr double degrees_per_pixel = 0.35; // as the camera turns
-constexpr double max_tip_m = 2.0;          // from the stage's middle, as far as arms reach
+void PlaceMover::go_by(const Vector3d& way_m) noexcept {
+  place_m_ = (place_m_ + way_m).cwiseMax(lowest_m_).cwiseMin(highest_m_);
+}
 
-} // namespace
+void PlaceMover::shift(const render::Camera& camera, double dx, double dy, double height) noexcept {
+  go_by(way_in_picture(camera, place_m_, dx, dy, height));
+}
+
+void PlaceMover::push(const render::Camera& camera, double steps) noexcept {
+  constexpr double step_m = 0.01;
+  go_by(-step_m * std::clamp(steps, -20.0, 20.0) * camera.axes().row(2).transpose());
+}
 
 void HandMover::take(const render::Camera& camera, const flow::Frame& frame,
                      const Vector2d& pointer, render::Size size) noexcept {
@@ -126,39 +132,27 @@ void HandMover::take(const render::Camera& camera, const flow::Frame& frame,
     if (!found) continue;
     nearest = found->px;
     slot_ = slot;
-    wrist_ = hand.T_stage_wrist;
+    rotation_ = Eigen::Quaterniond(hand.T_stage_wrist.linear());
+    // About what is looked at: a model need not be in the stage's middle.
+    begin(hand.T_stage_wrist.translation(), camera.target);
   }
-  // About what is looked at: a model need not be in the stage's middle. A hand that is farther
-  // away already stays where it is.
-  const Vector3d reach_m = Vector3d::Constant(max_reach_m);
-  lowest_m_ = wrist_.translation().cwiseMin(camera.target - reach_m);
-  highest_m_ = wrist_.translation().cwiseMax(camera.target + reach_m);
-}
-
-void HandMover::go_by(const Vector3d& way_m) noexcept {
-  wrist_.translation() = (wrist_.translation() + way_m).cwiseMax(lowest_m_).cwiseMin(highest_m_);
-}
-
-void HandMover::shift(const render::Camera& camera, double dx, double dy, double height) noexcept {
-  go_by(way_in_picture(camera, wrist_.translation(), dx, dy, height));
 }
 
 void HandMover::turn(const render::Camera& camera, double dx, double dy) noexcept {
+  constexpr double degrees_per_pixel = 0.35; // as the camera turns
   const Eigen::Matrix3d rows = camera.axes();
   const Eigen::AngleAxisd about_up(from_degrees(degrees_per_pixel * dx), rows.row(1).transpose());
   const Eigen::AngleAxisd about_level(from_degrees(degrees_per_pixel * dy),
                                       rows.row(0).transpose());
-  const Eigen::Quaterniond turned = about_level * about_up * Eigen::Quaterniond(wrist_.linear());
-  wrist_.linear() = turned.normalized().toRotationMatrix();
-}
-
-void HandMover::push(const render::Camera& camera, double steps) noexcept {
-  go_by(way_by_wheel(camera, steps));
+  rotation_ = (about_level * about_up * rotation_).normalized();
 }
 
 flow::WristMove HandMover::move() const noexcept {
   const Side side = slot_ == flow::Placement::index_of(Side::left) ? Side::left : Side::right;
-  return flow::WristMove::to(side, wrist_);
+  Eigen::Isometry3d wrist = Eigen::Isometry3d::Identity();
+  wrist.linear() = rotation_.toRotationMatrix();
+  wrist.translation() = place_m();
+  return flow::WristMove::to(side, wrist);
 }
 
 std::optional<hand::Finger> TipMover::tip_at(const render::Camera& camera,
@@ -171,19 +165,7 @@ std::optional<hand::Finger> TipMover::tip_at(const render::Camera& camera,
 
 void TipMover::take(const hand::HandPose& pose, hand::Finger finger) noexcept {
   finger_ = finger;
-  target_m_ = pose.fingertip_positions().col(static_cast<Eigen::Index>(finger));
-}
-
-void TipMover::go_by(const Vector3d& way_m) noexcept {
-  target_m_ = (target_m_ + way_m).cwiseMax(-max_tip_m).cwiseMin(max_tip_m);
-}
-
-void TipMover::shift(const render::Camera& camera, double dx, double dy, double height) noexcept {
-  go_by(way_in_picture(camera, target_m_, dx, dy, height));
-}
-
-void TipMover::push(const render::Camera& camera, double steps) noexcept {
-  go_by(way_by_wheel(camera, steps));
+  begin(pose.fingertip_positions().col(static_cast<Eigen::Index>(finger)), Vector3d::Zero());
 }
 
 } // namespace nendo::viewer

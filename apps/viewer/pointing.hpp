@@ -36,10 +36,6 @@ std::optional<NearPlace> nearest_in_picture(const render::Camera& camera,
 Eigen::Vector3d way_in_picture(const render::Camera& camera, const Eigen::Vector3d& place,
                                double dx, double dy, double height) noexcept;
 
-/// Returns the displacement for steps of the wheel, 1 cm each. Positive steps go away from the
-/// viewer.
-Eigen::Vector3d way_by_wheel(const render::Camera& camera, double steps) noexcept;
-
 struct Ray {
   Eigen::Vector3d from;
   Eigen::Vector3d along; ///< unit length
@@ -62,8 +58,29 @@ struct SurfaceHit {
 std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray,
                                     const deform::Points* rest = nullptr);
 
+/// A place on the stage that the mouse moves within a box.
+class PlaceMover {
+public:
+  /// Moves it by the pointer's motion in pixels, in the picture's plane, so that it stays under the
+  /// pointer. `height` is the picture's height in pixels.
+  void shift(const render::Camera& camera, double dx, double dy, double height) noexcept;
+  /// Moves it by steps of the wheel, 1 cm each. Positive steps go away from the viewer.
+  void push(const render::Camera& camera, double steps) noexcept;
+
+protected:
+  /// The box: as far as arms reach from `middle_m` on each axis, and up to the place itself.
+  void begin(const Eigen::Vector3d& place_m, const Eigen::Vector3d& middle_m) noexcept;
+  const Eigen::Vector3d& place_m() const noexcept { return place_m_; }
+
+private:
+  void go_by(const Eigen::Vector3d& way_m) noexcept;
+
+  Eigen::Vector3d place_m_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d lowest_m_ = Eigen::Vector3d::Zero(), highest_m_ = Eigen::Vector3d::Zero();
+};
+
 /// Drags a hand, simulated or of a glove without a tracker, while the mouse button is down.
-class HandMover {
+class HandMover : public PlaceMover {
 public:
   /// Takes the hand with the joint nearest to the pointer, in pixels from the picture's top left
   /// corner, if a joint is within `reach` pixels.
@@ -73,29 +90,19 @@ public:
   void release() noexcept { slot_.reset(); }
   bool holds() const noexcept { return slot_.has_value(); }
 
-  /// Moves the hand by the pointer's motion in pixels, in the picture's plane, so that it stays
-  /// under the pointer. `height` is the picture's height in pixels.
-  void shift(const render::Camera& camera, double dx, double dy, double height) noexcept;
   /// Rotates the hand about its wrist, around the picture's vertical and horizontal axes, by the
   /// pointer's motion in pixels.
   void turn(const render::Camera& camera, double dx, double dy) noexcept;
-  /// Moves the hand by steps of the wheel, 1 cm each. Positive steps go away from the viewer.
-  void push(const render::Camera& camera, double steps) noexcept;
-
   /// Returns the new wrist pose of the held hand.
   flow::WristMove move() const noexcept;
 
 private:
-  void go_by(const Eigen::Vector3d& way_m) noexcept;
-
-  std::optional<std::size_t> slot_;                         ///< flow::Placement::index_of(side)
-  Eigen::Isometry3d wrist_ = Eigen::Isometry3d::Identity(); ///< T_stage_wrist
-  Eigen::Vector3d lowest_m_ = Eigen::Vector3d::Zero(); ///< the limits of the wrist, on the stage
-  Eigen::Vector3d highest_m_ = Eigen::Vector3d::Zero();
+  std::optional<std::size_t> slot_; ///< flow::Placement::index_of(side)
+  Eigen::Quaterniond rotation_ = Eigen::Quaterniond::Identity(); ///< in T_stage_wrist
 };
 
 /// Drags a fingertip of a timeline's key while the mouse button is down.
-class TipMover {
+class TipMover : public PlaceMover {
 public:
   /// Returns the fingertip nearest to the pointer, in pixels from the picture's top left corner;
   /// nothing if none is within `reach` pixels.
@@ -108,19 +115,11 @@ public:
   void take(const hand::HandPose& pose, hand::Finger finger) noexcept;
   void release() noexcept { finger_.reset(); }
   std::optional<hand::Finger> finger() const noexcept { return finger_; } ///< the held one
-
-  /// As in HandMover.
-  void shift(const render::Camera& camera, double dx, double dy, double height) noexcept;
-  void push(const render::Camera& camera, double steps) noexcept;
-  /// Returns the held tip's target on the stage, in metres. Each coordinate is within 2 m of the
-  /// origin.
-  const Eigen::Vector3d& target_m() const noexcept { return target_m_; }
+  /// Returns the held tip's target on the stage, in metres.
+  const Eigen::Vector3d& target_m() const noexcept { return place_m(); }
 
 private:
-  void go_by(const Eigen::Vector3d& way_m) noexcept;
-
   std::optional<hand::Finger> finger_;
-  Eigen::Vector3d target_m_ = Eigen::Vector3d::Zero();
 };
 
 } // namespace nendo::viewer

@@ -430,7 +430,7 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     CHECK(person.window->message() == commands::no_strength);
   }
 
-  TEST_CASE("f sets the radius of what paints masks, in each mode, and not that of fingertips") {
+  TEST_CASE("f sets the radius of the brush for masks, in each mode, and not that of fingertips") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
     Person person;
