@@ -283,12 +283,36 @@ const viewer::TimelineView& EditSession::view() {
   view_.computed_s = progress.until_s;
   const auto found = shape();
   view_.shape_is_old = !found.fresh;
-  view_.functions.clear();
-  for (std::size_t at = 0; found.shape && at < found.shape->functions.size(); ++at)
-    view_.functions.push_back({timeline.rig->puppet().functions[at].name,
-                               static_cast<double>(found.shape->functions[at])});
+  follow_functions(found.shape.get());
   if (progress.error) report(Result<void>(*progress.error), {});
   return view_;
+}
+
+/// Reads the curves again when more shapes are made.
+void EditSession::follow_functions(const timeline::CachedShape* at_head) {
+  const Timeline& timeline = history_.timeline();
+  if (at_head == nullptr || at_head->functions.empty()) return view_.functions.clear();
+  view_.functions.resize(at_head->functions.size());
+  for (std::size_t at = 0; at < view_.functions.size(); ++at)
+    view_.functions[at].value = static_cast<double>(at_head->functions[at]);
+  const CurvesOf now{view_.computed_s, followed_};
+  if (std::exchange(curves_of_, now) == now) return;
+  constexpr std::size_t points = 240;
+  const auto shapes = cache_.all();
+  for (std::size_t at = 0; at < view_.functions.size(); ++at) {
+    viewer::FunctionCurve& curve = view_.functions[at];
+    curve.name = timeline.rig->puppet().functions[at].name;
+    curve.over_time.clear();
+    std::size_t next = 0; // the first shape that is not before the point
+    for (std::size_t point = 0; point < points; ++point) {
+      const double time_s = timeline.duration_s * static_cast<double>(point) / (points - 1);
+      while (next < shapes.size() && shapes[next]->time_s < time_s)
+        ++next;
+      if (next == shapes.size()) break;
+      curve.over_time.push_back(shapes[next]->functions[at]);
+    }
+    curve.over_time.resize(points, curve.over_time.empty() ? 0.0F : curve.over_time.back());
+  }
 }
 
 const render::SceneFrame& EditSession::scene_frame() {

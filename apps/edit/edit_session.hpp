@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands/edit_command.hpp"
@@ -69,6 +70,7 @@ private:
   void step(double frames);
   void step_history(bool redoes);
   void follow_history();
+  void follow_functions(const timeline::CachedShape* at_head);
   void follow_export();
   std::optional<timeline::KeyRef> key_of(const viewer::StripKey& key) const;
   commands::EditFacts facts() const noexcept;
@@ -83,6 +85,9 @@ private:
   std::unique_ptr<GlbExport> export_;
   std::vector<timeline::MovingHand> hands_; ///< in the order of the timeline's hands
   std::optional<std::uint64_t> followed_;   ///< the revision of the history to which hands_ belong
+  /// The computed time and the revision of the history.
+  using CurvesOf = std::pair<double, std::optional<std::uint64_t>>;
+  CurvesOf curves_of_{-1.0, {}}; ///< those of the curves in view_
   viewer::TimelineView view_;
   render::SceneFrame scene_frame_;
   bool ended_ = false;

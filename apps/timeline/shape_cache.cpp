@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <nendo/flow/frame.hpp>
@@ -152,6 +153,14 @@ ShapeCache::Found ShapeCache::nearest(double time_s) const {
       return {slots_[wanted + off], false};
   }
   return {};
+}
+
+std::vector<std::shared_ptr<const CachedShape>> ShapeCache::all() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<Shape> kept;
+  std::ranges::copy_if(slots_, std::back_inserter(kept),
+                       [](const Shape& shape) { return shape != nullptr; });
+  return kept;
 }
 
 ShapeCache::Progress ShapeCache::progress() const {

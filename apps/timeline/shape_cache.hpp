@@ -57,6 +57,9 @@ public:
   /// neighbour.
   Found nearest(double time_s) const;
 
+  /// Returns all shapes that are kept, in the order of time.
+  std::vector<std::shared_ptr<const CachedShape>> all() const;
+
   struct Progress {
     double until_s = 0.0;       ///< shapes are fresh up to this time
     double duration_s = 0.0;    ///< the current timeline's duration

@@ -86,10 +86,11 @@ private:
   double last_s_ = 1.0;
 };
 
-/// The value of a puppet's function.
-struct FunctionValue {
+/// The values of a puppet's function.
+struct FunctionCurve {
   std::string name;
-  double value = 0.0;
+  double value = 0.0;           ///< at the play head
+  std::vector<float> over_time; ///< at equal intervals over the timeline, as far as they are known
 };
 
 struct TimelineView {
@@ -98,7 +99,7 @@ struct TimelineView {
   double rate_hz = 90.0; ///< frames per second
   std::vector<StripLane> lanes;
   std::vector<StripMark> marks;
-  std::vector<FunctionValue> functions; ///< at the play head; empty without a puppet
+  std::vector<FunctionCurve> functions; ///< empty without a puppet
 
   double head_s = 0.0;
   bool loops = false;

@@ -162,15 +162,24 @@ private:
                                     : "the head is elsewhere: click the key to bend its fingers");
   }
 
-  /// A bar for each, from 0; those below 0 differ by their numbers.
+  /// A curve for each over the whole timeline, with a line at the play head.
   static void functions(const TimelineView& view) {
-    for (const FunctionValue& function : view.functions) {
-      char number[32];
-      std::snprintf(number, sizeof number, "%.2f", function.value);
-      const auto part = static_cast<float>(std::clamp(std::abs(function.value), 0.0, 1.0));
-      ImGui::ProgressBar(part, ImVec2(em(6.0F), 0.0F), number);
-      ImGui::SameLine();
-      ImGui::TextUnformatted(function.name.c_str());
+    const auto head =
+        static_cast<float>(view.duration_s > 0.0 ? view.head_s / view.duration_s : 0.0);
+    const float width = ImGui::GetContentRegionAvail().x;
+    for (const FunctionCurve& function : view.functions) {
+      char words[96];
+      std::snprintf(words, sizeof words, "%s %.2f", function.name.c_str(), function.value);
+      ImGui::PushID(function.name.c_str());
+      ImGui::PlotLines("##curve", function.over_time.data(),
+                       static_cast<int>(function.over_time.size()), 0, words, -1.1F, 1.1F,
+                       ImVec2(width, em(2.6F)));
+      ImGui::PopID();
+      const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+      const float x = low.x + head * (high.x - low.x);
+      ImGui::GetWindowDrawList()->AddLine({x, low.y}, {x, high.y}, ImGui::GetColorU32(warning()),
+                                          1.5F * scale());
+      note_control("function " + function.name, words);
     }
   }
 
