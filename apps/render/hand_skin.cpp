@@ -27,8 +27,6 @@ hand::JointAngles open_angles() {
   return angles;
 }
 
-constexpr float cell_m = 0.0034F; // some five thousand places
-
 // Across a bone, from its size in the bind pose.
 double length_of_hand(const hand::HandPose& pose) {
   const auto step = [&](Joint from, Joint to) {
@@ -253,7 +251,7 @@ hand::HandPose HandSkin::bind_pose(Side side) {
 }
 
 // A left hand is the mirror image of a right one.
-HandSkin::HandSkin(Side side) : bind_(bind_pose(side)) {
+HandSkin::HandSkin(Side side, float cell_m) : bind_(bind_pose(side)) {
   const HandFlesh flesh(bind_pose(Side::right));
   SkinMesh mesh = net_about(flesh, cell_m);
   influences_ = weights_of(flesh, mesh);

@@ -27,8 +27,12 @@ public:
     linear, ///< as matrices: it gets thinner; this is all that glTF has
   };
 
-  /// Makes the skin, which takes some tens of milliseconds. Allocates.
-  explicit HandSkin(Side side);
+  static constexpr float fine_cell_m = 0.0034F; ///< the cell of some five thousand places
+  static constexpr float coarse_cell_m = 0.006F;
+
+  /// Makes the skin, which takes some tens of milliseconds. Its triangles are about as large as a
+  /// cell. Allocates.
+  explicit HandSkin(Side side, float cell_m = fine_cell_m);
 
   /// Computes the skin in that pose, moved by -origin_m, and replaces positions, normals and
   /// corners of `surface`. Bones may have any length: the skin is stretched along each bone, and

@@ -98,7 +98,7 @@ constexpr std::uint32_t no_cube = std::numeric_limits<std::uint32_t>::max();
 /// The cubes of a grid that have places, numbered as they come.
 class Cubes {
 public:
-  Cubes(const std::vector<Vector3f>& places, int along)
+  Cubes(std::span<const Vector3f> places, int along)
       : along_(along), numbers_(static_cast<std::size_t>(along) * static_cast<std::size_t>(along) *
                                     static_cast<std::size_t>(along),
                                 no_cube) {
@@ -168,30 +168,68 @@ bool is_dense(const Surface& surface) noexcept {
   return surface.places.size() > dense_places;
 }
 
-Surface coarse_surface(const Surface& surface, int cubes) {
-  Cubes grid(surface.places, cubes);
-  std::vector<std::uint32_t> cube_of;
-  cube_of.reserve(surface.places.size());
-  for (const Vector3f& place : surface.places)
-    cube_of.push_back(grid.number_of(place));
-  std::vector<Eigen::Vector4d> sums(grid.count(), Eigen::Vector4d::Zero()); // the last: how many
-  for (std::size_t at = 0; at < cube_of.size(); ++at)
-    if (cube_of[at] != no_cube) {
-      sums[cube_of[at]].head<3>() += surface.places[at].cast<double>();
-      sums[cube_of[at]].w() += 1.0;
-    }
-  Surface coarse;
-  coarse.material = surface.material;
-  for (const Eigen::Vector4d& sum : sums)
-    coarse.places.emplace_back((sum.head<3>() / sum.w()).cast<float>());
-  for (std::size_t at = 0; at + 2 < surface.corners.size(); at += 3) {
-    const std::uint32_t a = cube_of[surface.corners[at]];
-    const std::uint32_t b = cube_of[surface.corners[at + 1]];
-    const std::uint32_t c = cube_of[surface.corners[at + 2]];
+namespace {
+
+/// Places, by the cubes that they are in.
+struct Crowds {
+  std::vector<std::uint32_t> cube_of; ///< the cube of each place; no_cube: none
+  std::vector<Vector3f> means;        ///< the mean of the places in each cube
+
+  Crowds(std::span<const Vector3f> places, int cubes) {
+    Cubes grid(places, cubes);
+    cube_of.reserve(places.size());
+    for (const Vector3f& place : places)
+      cube_of.push_back(grid.number_of(place));
+    std::vector<Eigen::Vector4d> sums(grid.count(), Eigen::Vector4d::Zero()); // the last: how many
+    for (std::size_t at = 0; at < cube_of.size(); ++at)
+      if (cube_of[at] != no_cube) sums[cube_of[at]] += places[at].cast<double>().homogeneous();
+    for (const Eigen::Vector4d& sum : sums)
+      means.emplace_back((sum.head<3>() / sum.w()).cast<float>());
+  }
+};
+
+/// Returns the triangles whose corners are in three cubes, with these corners in place of the
+/// cubes.
+template <class CornerOf>
+std::vector<std::uint32_t> triangles_between(std::span<const std::uint32_t> corners,
+                                             const Crowds& crowds, const CornerOf& corner_of) {
+  std::vector<std::uint32_t> coarse;
+  for (std::size_t at = 0; at + 2 < corners.size(); at += 3) {
+    const std::uint32_t a = crowds.cube_of[corners[at]];
+    const std::uint32_t b = crowds.cube_of[corners[at + 1]];
+    const std::uint32_t c = crowds.cube_of[corners[at + 2]];
     if (a == b || b == c || c == a || a == no_cube || b == no_cube || c == no_cube) continue;
-    coarse.corners.insert(coarse.corners.end(), {a, b, c});
+    coarse.insert(coarse.end(), {corner_of(a), corner_of(b), corner_of(c)});
   }
   return coarse;
+}
+
+} // namespace
+
+Surface coarse_surface(const Surface& surface, int cubes) {
+  Crowds crowds(surface.places, cubes);
+  Surface coarse;
+  coarse.material = surface.material;
+  coarse.corners =
+      triangles_between(surface.corners, crowds, [](std::uint32_t cube) { return cube; });
+  coarse.places = std::move(crowds.means);
+  return coarse;
+}
+
+std::vector<std::uint32_t> coarse_corners(std::span<const Vector3f> places,
+                                          std::span<const std::uint32_t> corners, int cubes) {
+  const Crowds crowds(places, cubes);
+  std::vector<std::uint32_t> nearest(crowds.means.size());
+  std::vector<float> least(crowds.means.size(), std::numeric_limits<float>::infinity());
+  for (std::size_t at = 0; at < places.size(); ++at) {
+    const std::uint32_t cube = crowds.cube_of[at];
+    if (cube == no_cube) continue;
+    const float square = (places[at] - crowds.means[cube]).squaredNorm();
+    if (square >= least[cube]) continue;
+    least[cube] = square;
+    nearest[cube] = static_cast<std::uint32_t>(at);
+  }
+  return triangles_between(corners, crowds, [&](std::uint32_t cube) { return nearest[cube]; });
 }
 
 namespace {

@@ -26,6 +26,11 @@ bool is_dense(const Surface& surface) noexcept;
 /// Places that are no numbers, or are far away, are left out with their triangles.
 Surface coarse_surface(const Surface& surface, int cubes = 160);
 
+/// Does the same with places of the surface: of those in each cube, the one that is nearest to
+/// their mean stands for all. Returns the corners of the triangles, which are indices of `places`.
+std::vector<std::uint32_t> coarse_corners(std::span<const Eigen::Vector3f> places,
+                                          std::span<const std::uint32_t> corners, int cubes);
+
 /// The directions to the lights, seen from the front. They turn with the view.
 inline const Eigen::Vector3f key_direction{-0.55F, 0.75F, 0.55F};
 inline const Eigen::Vector3f fill_direction{0.85F, 0.25F, 0.50F};

@@ -39,6 +39,12 @@ const HandSkin& skin_of(std::size_t slot) {
   static const std::array<HandSkin, 2> skins{HandSkin(Side::left), HandSkin(Side::right)};
   return skins[slot];
 }
+const HandSkin& coarse_skin_of(std::size_t slot) {
+  constexpr float cell_m = HandSkin::coarse_cell_m;
+  static const std::array<HandSkin, 2> skins{HandSkin(Side::left, cell_m),
+                                             HandSkin(Side::right, cell_m)};
+  return skins[slot];
+}
 
 } // namespace
 
@@ -85,6 +91,8 @@ void SceneBuilder::build(const SceneFrame& scene_frame, const SceneParts& parts,
   scene.model.corners = corners_;
   compute_normals(scene.model.places, corners_, scene.model.normals);
   build_beside(scene_frame, parts, scene);
+  scene.grounds.clear();
+  if (parts.ground) add_ground(scene, ground_cells);
 }
 
 void SceneBuilder::build_beside(const SceneFrame& scene_frame, const SceneParts& parts,
@@ -99,7 +107,7 @@ void SceneBuilder::build_beside(const SceneFrame& scene_frame, const SceneParts&
       add_hand(*scene_frame.hands[slot], slot, scene_frame, parts, scene);
   if (parts.contacts) add_contacts(scene_frame, scene);
   if (!scene_frame.wire.empty()) add_wire(scene_frame, scene);
-  if (parts.ground) add_ground(scene);
+  if (parts.ground) add_ground(scene, 1);
 }
 
 void SceneBuilder::add_hand(const SceneHand& hand, std::size_t slot, const SceneFrame& scene_frame,
@@ -110,7 +118,8 @@ void SceneBuilder::add_hand(const SceneHand& hand, std::size_t slot, const Scene
   }
   if (parts.hands) {
     scene.veils.push_back({{}, {}, {}, hand.silent ? silent_skin : skin});
-    skin_of(slot).drape(hand.pose, origin_m_, scene.veils.back());
+    const HandSkin& shape = parts.coarse_hands ? coarse_skin_of(slot) : skin_of(slot);
+    shape.drape(hand.pose, origin_m_, scene.veils.back());
   }
   Surface arrows{{}, {}, {}, arrow};
   const auto tips = hand.pose.fingertip_positions();
@@ -169,21 +178,21 @@ void SceneBuilder::add_wire(const SceneFrame& scene_frame, Scene& scene) const {
   scene.veils.push_back(std::move(swept));
 }
 
-// In cells, for what light reaches it is known at its vertices.
-void SceneBuilder::add_ground(Scene& scene) const {
+// In so many cells along a side, for pictures know what light reaches it at its vertices.
+void SceneBuilder::add_ground(Scene& scene, int cells) const {
   Surface surface{{}, {}, {}, ground};
   constexpr double without_model_m = 0.5;
   const double longest =
       corners_.empty() ? without_model_m : std::clamp(size_m_.maxCoeff(), 0.1, 2.0);
   const auto half = static_cast<float>(ground_of_size * longest);
   surface.material.fade_m = half;
-  const float cell = 2.0F * half / ground_cells;
-  for (int row = 0; row <= ground_cells; ++row)
-    for (int column = 0; column <= ground_cells; ++column)
+  const float cell = 2.0F * half / static_cast<float>(cells);
+  for (int row = 0; row <= cells; ++row)
+    for (int column = 0; column <= cells; ++column)
       surface.places.emplace_back(static_cast<float>(column) * cell - half, 0.0F,
                                   static_cast<float>(row) * cell - half);
   surface.normals.assign(surface.places.size(), Vector3f::UnitY());
-  constexpr std::uint32_t side = ground_cells + 1;
+  const auto side = static_cast<std::uint32_t>(cells) + 1;
   for (std::uint32_t row = 0; row + 1 < side; ++row)
     for (std::uint32_t column = 0; column + 1 < side; ++column) {
       const std::uint32_t at = row * side + column;
@@ -203,6 +212,7 @@ void set_hands(const flow::Frame& frame, const HoldTracker& holds, SceneFrame& s
   const bool is_puppet = frame.function_count > 0; // which fingertips do not touch
   const bool is_by_hands = frame.clay.is_clay || frame.parts.count > 0; // whose tips hold nothing
   scene_frame.held = frame.held && !is_puppet && !is_by_hands;
+  scene_frame.accumulates = frame.settings.mode == flow::Mode::type2;
   scene_frame.contacts.clear();
   for (const deform::ClayContact& contact : frame.contacts.all())
     scene_frame.contacts.push_back(

@@ -20,6 +20,7 @@ struct SceneParts {
   bool radii = true;     ///< the radius of each fingertip's support
   bool contacts = false; ///< where hands touch clay, and how hard
   bool ground = true;
+  bool coarse_hands = false; ///< with a third of the triangles, for small hands
 };
 
 struct Scene {
@@ -41,7 +42,8 @@ public:
   /// Makes the scene of a frame, which must have as many vertices as the mesh. Allocates where
   /// `scene` is too small, so it must not be called in the loop's thread.
   void build(const SceneFrame& scene_frame, const SceneParts& parts, Scene& scene) const;
-  /// Makes only the parts other than the model. Of scene.model, only the material is set.
+  /// Makes only the parts other than the model, for renderers that light each pixel: the ground is
+  /// two triangles. Of scene.model, only the material is set.
   void build_beside(const SceneFrame& scene_frame, const SceneParts& parts, Scene& scene) const;
 
   double units_per_metre() const noexcept { return units_per_metre_; }
@@ -60,7 +62,7 @@ private:
                 const SceneParts& parts, Scene& scene) const;
   void add_contacts(const SceneFrame& scene_frame, Scene& scene) const;
   void add_wire(const SceneFrame& scene_frame, Scene& scene) const;
-  void add_ground(Scene& scene) const;
+  void add_ground(Scene& scene, int cells) const;
 
   double units_per_metre_;
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();

@@ -31,7 +31,8 @@ struct SceneFrame {
   deform::Points vertices;                       ///< 3 by #vertices, model units
   std::shared_ptr<const deform::Mesh> mesh;      ///< whose faces it has; null: the model's at first
   std::array<std::optional<SceneHand>, 2> hands; ///< index: flow::Placement::index_of(side)
-  bool held = false; ///< fingertips hold the model; otherwise there are no control vectors
+  bool held = false;        ///< fingertips hold the model; otherwise there are no control vectors
+  bool accumulates = false; ///< type 2: held, they reach from where they are, not from the starts
   /// The radius of each fingertip's support, on the stage; 0 means not shown.
   std::array<double, 5> radius_m{};
   std::vector<SceneContact> contacts{};

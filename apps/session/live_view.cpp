@@ -47,6 +47,7 @@ public:
         gauges_.devices[slot].insert(gauges_.devices[slot].end(), {title, state});
     }
     gauges_.facts = status.facts;
+    gauges_.parts = status.model.parts;
     gauges_.vertices = status.model.mesh.vertex_count();
     if (model_ != status.frame.model) {
       show_again(status);
@@ -70,6 +71,7 @@ public:
   }
   void report(const std::string& message) override { gauges_.report = message; }
   bool sets_pace() const noexcept override { return true; }
+  const PictureTimes* picture_times() const noexcept override { return &window_->picture_times(); }
   bool stays_open() const noexcept override { return true; }
 
   Result<void> end() override {

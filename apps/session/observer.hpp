@@ -16,6 +16,7 @@
 #include "commands/commands.hpp"
 #include "gloves/device_status.hpp"
 #include "session/place_loop.hpp"
+#include "viewer/picture_times.hpp"
 
 namespace nendo::session {
 
@@ -62,6 +63,8 @@ public:
   /// Returns whether the user has decided about the shape, which the run then does not write at
   /// its end.
   virtual bool has_settled_shape() const noexcept { return false; }
+  /// Returns the times of the pictures that it has drawn; null: it draws none.
+  virtual const viewer::PictureTimes* picture_times() const noexcept { return nullptr; }
   /// Called after the loop has ended and the shape is written. The run returns its error.
   virtual Result<void> end() { return {}; }
 };

@@ -299,6 +299,11 @@ void print_summary_text(const RunOptions& options, const std::vector<gloves::Ope
   print_row("", options.hands_only ? "from the last byte of a sample to the hand's joints"
                                    : "from the last byte of a sample to the finished mesh");
   print_pose_latencies(stats);
+  if (outcome.pictures) {
+    print_percentiles("picture", outcome.pictures->whole);
+    print_percentiles("preparing it", outcome.pictures->preparing);
+    print_row("", "without what OpenGL draws");
+  }
   print_filter(options.filter, stats);
   if (!options.hands_only) print_shape(options, outcome);
   print_recordings(outcome.recordings);

@@ -242,6 +242,10 @@ void print_summary_json(const RunOptions& options, const std::vector<gloves::Ope
     line["pose_to_frame_ms"] = percentiles(stats.pose_to_frame);
     line["pose_age_ms"] = percentiles(stats.pose_age);
   }
+  if (outcome.pictures) {
+    line["picture_ms"] = percentiles(outcome.pictures->whole);
+    line["picture_preparing_ms"] = percentiles(outcome.pictures->preparing);
+  }
   line["wake_latency_ms"] = percentiles(stats.wake_latency);
   line["work_ms"] = percentiles(stats.work);
   line["vertices"] = outcome.vertices;

@@ -185,6 +185,8 @@ public:
                        recorder_.outcomes()};
     outcome.sculptor = sculptor;
     outcome.units_per_metre = placed_.setup.placement.units_per_metre;
+    for (const Observer* observer : observers_)
+      if (const auto* const times = observer->picture_times()) outcome.pictures = *times;
     return outcome;
   }
 

@@ -3,6 +3,7 @@
 // The main thread observes it, takes commands, and prepares changes.
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct RunOutcome {
   /// The options after all changes of settings.
   flow::SculptorOptions sculptor{};
   double units_per_metre = 1.0; ///< model units per metre of the stage
+  std::optional<viewer::PictureTimes> pictures{};
 };
 
 /// Returns the number of a run's deadlines on the grid; unlimited if the run ends by the clock.

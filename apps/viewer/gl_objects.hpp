@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -13,12 +14,15 @@
 
 #include "render/image.hpp"
 #include "render/paint.hpp"
+#include "viewer/matcap.hpp"
 
 namespace nendo::viewer {
 
-/// The fragment shader of a program: for depths and silhouettes, for ground planes, or for
-/// surfaces.
-enum class Fragments : std::size_t { white, ground, surface };
+/// The kind of a program: of one colour, for depths, silhouettes and outlines; for ground planes;
+/// for surfaces; for surfaces with one material; for a model with a MatCap; or for one whose
+/// triangles are of a few pixels, with colours computed at its vertices.
+enum class Fragments : std::size_t { flat, ground, surface, plain, matcap, merged };
+inline constexpr std::size_t fragments_count = 6;
 
 /// Makes a program and returns its name. Error: failed (the shaders do not compile; the message has
 /// the log).
@@ -26,6 +30,9 @@ Result<unsigned> make_program(Fragments kind);
 
 /// Sets a uniform of the program, which must be in use.
 void set(unsigned program, const char* name, const Eigen::Matrix4f& value);
+void set(unsigned program, const char* name, const Eigen::Matrix3f& value);
+void set(unsigned program, const char* name, std::span<const Eigen::Vector4f> values);
+void set(unsigned program, const char* name, const Eigen::Vector2f& value);
 void set(unsigned program, const char* name, const Eigen::Vector3f& value);
 void set(unsigned program, const char* name, float value);
 void set(unsigned program, const char* name, int value);
@@ -57,10 +64,27 @@ private:
   std::vector<unsigned> pictures_;            ///< one per coat; 0: none
 };
 
+/// The pictures of all MatCaps.
+class MatCapTextures {
+public:
+  static constexpr int unit = 8; ///< the shader's texture unit, after those of ModelTextures
+
+  MatCapTextures();
+  ~MatCapTextures();
+  MatCapTextures(const MatCapTextures&) = delete;
+  MatCapTextures& operator=(const MatCapTextures&) = delete;
+  /// Selects the material's picture, which must be a MatCap, for drawing.
+  void use(Material material) const;
+
+private:
+  std::array<unsigned, material_names.size() - 1> names_{};
+};
+
 /// A shadow map: the depths of all shadow casters, seen from the light.
 class ShadowMap {
 public:
-  ShadowMap();
+  /// `side`: samples along a side.
+  explicit ShadowMap(int side);
   ~ShadowMap();
   ShadowMap(const ShadowMap&) = delete;
   ShadowMap& operator=(const ShadowMap&) = delete;
@@ -80,9 +104,8 @@ public:
   /// Returns the depth texture, with comparison and linear filtering.
   unsigned texture() const noexcept { return texture_; }
 
-  static constexpr int side = 2048; ///< samples
-
 private:
+  int side_;
   unsigned texture_ = 0;
   unsigned frame_buffer_ = 0;
   int before_ = 0; ///< the framebuffer before begin()

@@ -10,12 +10,24 @@
 
 namespace nendo::viewer {
 
+namespace {
+
+/// Returns the radius about each fingertip within which the hands move the model; 0: none.
+std::array<double, 5> reach_of(const flow::Frame& frame) {
+  std::array<double, 5> radius_m = frame.settings.radius_m;
+  if (frame.function_count > 0 || frame.parts.count > 0) radius_m.fill(0.0);
+  if (frame.clay.is_clay)
+    for (double& radius : radius_m)
+      radius = std::max(radius, flow::ClayHands::min_radius_m);
+  return radius_m;
+}
+
+} // namespace
+
 LiveWindow::LiveWindow(std::shared_ptr<SceneWindow> window)
     : window_(std::move(window)), panel_(std::make_unique<Panel>()),
       editor_(std::make_unique<PuppetEditor>()), tool_(std::make_unique<PuppetTool>()),
-      marks_(std::make_unique<PuppetMarks>()) {
-  window_->parts().radii = false; // as on the page
-}
+      marks_(std::make_unique<PuppetMarks>()) {}
 
 LiveWindow::~LiveWindow() = default;
 
@@ -33,7 +45,6 @@ void LiveWindow::begin(const deform::BlockLayout& layout, const render::SceneBui
                        const flow::LoopSettings& settings) {
   set_model(layout, builder);
   panel_->follow_settings(settings);
-  scene_frame_.radius_m = settings.radius_m;
   holds_ = {};
 }
 
@@ -51,8 +62,9 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
     holds_.follow(frame);
     panel_->follow(frame, gauges.rate_hz);
     if (shows_loop_) window_->follow(frame.shape);
-    scene_frame_.radius_m = frame.settings.radius_m;
+    scene_frame_.radius_m = reach_of(frame);
   }
+  window_->set_parts_in_reach(gauges.parts, frame.parts.in_reach);
   set_hands(frame, holds_, scene_frame_);
   if (frame.ticks_run > 0) panel_->follow_settings(frame.settings);
   window_->leave_left(panel_->covered_px());
@@ -67,8 +79,14 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
   // A puppet that was begun here is played by hands that had nothing to hold.
   const bool begins = !std::exchange(plays_, frame.function_count > 0) && plays_;
   if (begins && frame.puppet > 0 && !frame.held) commands.emplace_back(flow::Request::grab);
+  const HostTime prepared = HostClock::now();
   window_->end_picture();
-  panel_->pictures_ms.add(static_cast<float>(1e3 * to_seconds(HostClock::now() - begin)));
+  const HostTime end = HostClock::now();
+  panel_->pictures_ms.add(static_cast<float>(1e3 * to_seconds(end - begin)));
+  if (fresh) {
+    picture_times_.preparing.record(prepared - begin);
+    picture_times_.whole.record(end - begin);
+  }
   if (window_->take_close_request()) commands.emplace_back(flow::EndRun{});
   return commands;
 }

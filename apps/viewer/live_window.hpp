@@ -12,6 +12,7 @@
 #include <nendo/flow/frame.hpp>
 
 #include "commands/commands.hpp"
+#include "viewer/picture_times.hpp"
 #include "viewer/pointing.hpp"
 #include "viewer/scene_window.hpp"
 
@@ -24,6 +25,8 @@ struct Gauges {
   std::size_t vertices = 0; ///< the number of the model's vertices
   /// Lines about the devices of each hand, by flow::Placement::index_of(side).
   std::array<std::vector<std::string>, 2> devices;
+  std::shared_ptr<const deform::ModelParts>
+      parts{}; ///< those of the frame's model; null: not in use
   commands::RunFacts facts{};
   std::string report; ///< the result of the last command that saved something
 };
@@ -66,6 +69,7 @@ public:
   /// Returns the settings that the panel shows.
   const flow::LoopSettings& settings() const noexcept;
 
+  const PictureTimes& picture_times() const noexcept { return picture_times_; }
   SceneWindow& scene_window() noexcept { return *window_; }
 
 private:
@@ -87,6 +91,7 @@ private:
   render::HoldTracker holds_;
   render::SceneFrame scene_frame_;
   HandMover hand_mover_;
+  PictureTimes picture_times_;
 };
 
 } // namespace nendo::viewer

@@ -256,7 +256,12 @@ void SceneWindow::set_title(const std::string& title) {
 void SceneWindow::begin_picture(const render::SceneFrame& scene_frame, bool is_whole) {
   begun_ = HostClock::now();
   glfwPollEvents();
-  builder_.build_beside(scene_frame, parts_, scene_);
+  render::SceneParts surfaces = parts_;
+  surfaces.radii = false; // lines on the model show them
+  const double metre_px = scene_size().height / (2.0 * camera_.tangent() * camera_.distance_m);
+  surfaces.coarse_hands = metre_px * static_cast<double>(render::HandSkin::coarse_cell_m) < 5.0;
+  builder_.build_beside(scene_frame, surfaces, scene_);
+  set_reaches(scene_frame);
   if (kept_framed_)
     look_at(kept_framed_->points, kept_framed_->view);
   else if (!framed_)
@@ -270,6 +275,28 @@ void SceneWindow::begin_picture(const render::SceneFrame& scene_frame, bool is_w
   forget_controls();
   ImGui::NewFrame();
   if (bar_) bar_();
+}
+
+void SceneWindow::set_reaches(const render::SceneFrame& scene_frame) {
+  const ImVec4 line = accent();
+  style_.accent = {line.x, line.y, line.z};
+  style_.line_width_px = 2.0F * scale();
+  style_.reaches.clear();
+  style_.outlined = {deform::no_index, deform::no_index};
+  if (!parts_.radii) return;
+  style_.outlined = in_reach_;
+  const bool is_at_starts = scene_frame.held && !scene_frame.accumulates;
+  for (const auto& hand : scene_frame.hands) {
+    if (!hand) continue;
+    const render::TipPlaces tips = is_at_starts ? hand->starts : hand->pose.fingertip_positions();
+    for (Eigen::Index finger = 0; finger < tips.cols(); ++finger) {
+      const double radius_m = scene_frame.radius_m[static_cast<std::size_t>(finger)];
+      if (!(radius_m > 0.0)) continue;
+      const Eigen::Vector3d place_m = tips.col(finger) - builder_.origin_m();
+      style_.reaches.emplace_back(place_m.homogeneous().cast<float>());
+      style_.reaches.back().w() = static_cast<float>(radius_m);
+    }
+  }
 }
 
 void SceneWindow::add(render::Surface surface) {
@@ -374,10 +401,13 @@ void SceneWindow::execute(std::string_view name) {
                                       {"show vectors", &parts_.vectors},
                                       {"show radii", &parts_.radii},
                                       {"show contact", &parts_.contacts},
-                                      {"show facets", &facets_}})
+                                      {"show facets", &style_.facets}})
     if (name == command) *part = !*part;
   for (const ViewChoice& choice : views)
     if (name == choice.name) camera_.view = choice.view;
+  if (name == "next material")
+    style_.material = static_cast<Material>((static_cast<std::size_t>(style_.material) + 1) %
+                                            material_names.size());
 }
 
 void SceneWindow::follow_view_keys() {
@@ -396,7 +426,7 @@ void SceneWindow::end_picture() {
 }
 
 bool SceneWindow::Shown::is_of(const SceneWindow& window, render::Size wanted) const {
-  return size == wanted && blocks_sent == window.blocks_sent() && facets == window.facets_ &&
+  return size == wanted && blocks_sent == window.blocks_sent() && style == window.style_ &&
          camera == window.camera_ && scene == window.scene_;
 }
 
@@ -407,9 +437,8 @@ void SceneWindow::draw_scene(render::Size size, bool finest) {
   if (rests && shown_.smooth) return;
   const bool smooth = finest || rests;
   target_->begin(size, smooth);
-  renderer_->draw(scene_, camera_, size,
-                  facets_ ? GlRenderer::Look::facets : GlRenderer::Look::shaded);
-  shown_ = {scene_, camera_, size, blocks_sent(), facets_, smooth};
+  renderer_->draw(scene_, camera_, size, style_, !smooth);
+  shown_ = {scene_, camera_, size, blocks_sent(), style_, smooth};
 }
 
 void SceneWindow::draw_all(bool finest) {
@@ -439,13 +468,14 @@ render::Camera SceneWindow::stage_camera() const noexcept {
   return camera;
 }
 
-render::Image SceneWindow::screenshot() {
-  draw_all(true); // again, for what was shown may be gone
+render::Image SceneWindow::screenshot(bool is_quick) {
+  if (is_quick) shown_.size = {}; // as if it were the first one of its kind
+  draw_all(!is_quick);            // again, for what was shown may be gone
   return read_pixels(pixels_of(window_));
 }
 
 render::Image SceneWindow::silhouette(render::Size size) {
-  renderer_->draw(scene_, camera_, size, GlRenderer::Look::silhouette);
+  renderer_->draw_silhouette(scene_, camera_, size);
   return read_pixels(size);
 }
 

@@ -69,7 +69,15 @@ public:
   /// left and bottom, as in Blender.
   void follow_view_keys();
   render::SceneParts& parts() noexcept { return parts_; }
-  bool& facets() noexcept { return facets_; } ///< flat instead of smooth shading
+  bool& facets() noexcept { return style_.facets; }         ///< flat instead of smooth shading
+  Material& material() noexcept { return style_.material; } ///< the model's
+  /// Sets the parts of the model that are in reach of the hands. They have an outline while radii
+  /// are shown.
+  void set_parts_in_reach(std::shared_ptr<const deform::ModelParts> parts,
+                          const std::array<std::uint32_t, 2>& numbers) noexcept {
+    style_.parts = std::move(parts);
+    in_reach_ = numbers;
+  }
   /// Draws the picture and waits for the screen, or for at most 8 ms if there is none.
   void end_picture();
 
@@ -101,7 +109,9 @@ public:
   const render::Scene& scene() const noexcept { return scene_; } ///< without the model's positions
   std::uint64_t blocks_sent() const noexcept { return renderer_->blocks_sent(); }
 
-  render::Image screenshot(); ///< the last shown picture
+  /// Returns the last shown picture, or with `is_quick` draws it as it is drawn without a graphics
+  /// card while something moves.
+  render::Image screenshot(bool is_quick = false);
   /// Does the same as render::silhouette() with OpenGL, for the last shown scene.
   render::Image silhouette(render::Size size);
   /// Replaces mouse and keyboard by `input` from the next picture on.
@@ -114,7 +124,7 @@ private:
     render::Camera camera;
     render::Size size;
     std::uint64_t blocks_sent = 0;
-    bool facets = false;
+    Style style;
     bool smooth = false; ///< multisampled; not compared
     /// Returns whether the picture would be the same now. Compares the scene last, because it is
     /// the largest.
@@ -123,6 +133,7 @@ private:
 
   SceneWindow();
   double covered_part() const noexcept;
+  void set_reaches(const render::SceneFrame& scene_frame);
   void choose_camera(render::View view);
   void look_at(std::span<const Eigen::Vector3f> points, render::View view);
   void put_simulated() const;
@@ -140,6 +151,8 @@ private:
   render::SceneParts parts_;
   render::Scene scene_;
   render::Camera camera_;
+  Style style_;
+  std::array<std::uint32_t, 2> in_reach_{deform::no_index, deform::no_index};
   Shown shown_; ///< the inputs of the picture in target_; initially of zero size
   HostTime begun_{};
   struct Framed {
@@ -151,7 +164,6 @@ private:
   int left_ = 0;
   bool framed_ = false;
   bool draws_itself_ = false; ///< software rendering
-  bool facets_ = false;
 };
 
 } // namespace nendo::viewer

@@ -156,6 +156,31 @@ TEST_SUITE("part_mover") {
     }
   }
 
+  TEST_CASE("an open hand has that part in reach which it takes when it closes") {
+    Bench bench(1);
+    const auto in_reach_at = [&](const Vector3d& place) {
+      bench.grips[0].frame.translation() = place;
+      bench.move();
+      return bench.mover.in_reach_of(0);
+    };
+    const Vector3d middle(far_apart, 0.0, 0.0); // of the second ball
+    CHECK(in_reach_at(middle + 1.1 * Vector3d::UnitY()) == 1);
+    CHECK(in_reach_at(middle) == 1);
+    CHECK(in_reach_at(middle + 1.1 * Vector3d::UnitX() + far_apart * Vector3d::UnitX()) == 2);
+    CHECK(in_reach_at(middle + 1.5 * Vector3d::UnitY()) == no_index); // beyond 0.3
+    for (const Vector3d& place : {Vector3d(middle + 1.2 * Vector3d::UnitY()),
+                                  Vector3d(middle + 3.0 * Vector3d::UnitY()), middle}) {
+      const std::uint32_t expected = in_reach_at(place);
+      bench.grips[0].is_closed = true;
+      bench.move();
+      CHECK(bench.mover.held_by(0) == expected);
+      bench.move();
+      CHECK(bench.mover.in_reach_of(0) == no_index); // a closed hand takes nothing more
+      bench.grips[0].is_closed = false;
+      bench.move();
+    }
+  }
+
   TEST_CASE("two hands carry two parts, each its own") {
     std::mt19937 random(2);
     Bench bench;

@@ -79,6 +79,22 @@ TEST_SUITE("coarse surface") {
     CHECK(open == 0);
   }
 
+  TEST_CASE(
+      "coarse corners are places of the surface, and make a closed one with fewer triangles") {
+    const Surface dense = bumpy(180, 360);
+    const std::vector<std::uint32_t> corners = coarse_corners(dense.places, dense.corners, 40);
+    const Surface means = coarse_surface(dense, 40);
+    REQUIRE(corners.size() == means.corners.size());
+    const float cube_m = 1.0F / 40.0F; // and no more
+    float farthest = 0.0F;
+    for (std::size_t at = 0; at < corners.size(); ++at) {
+      REQUIRE(corners[at] < dense.places.size());
+      farthest =
+          std::max(farthest, (dense.places[corners[at]] - means.places[means.corners[at]]).norm());
+    }
+    CHECK(farthest < cube_m);
+  }
+
   TEST_CASE("places that are no numbers or far away are left out, and nothing else") {
     Surface surface = bumpy(10, 20);
     const std::size_t triangles = surface.corners.size();

@@ -8,9 +8,13 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <GLFW/glfw3.h>
 #include <doctest/doctest.h>
+
+#include <nendo/deform/part_mover.hpp>
+#include <nendo/hand/skeleton.hpp>
 
 #include "render/picture.hpp"
 #include "support/memory_screen.hpp"
@@ -40,7 +44,7 @@ struct Look {
   deform::BlockLayout layout;
   SceneBuilder builder;
   std::unique_ptr<SceneWindow> window;
-  SceneFrame no_hands;
+  SceneFrame frame; ///< without hands, at first
 
   explicit Look(const deform::Mesh& model) : mesh(model), layout(model.vertices), builder(model) {
     auto opened = SceneWindow::open("test", {size, Theme::light, 1.0F}, "nothing else");
@@ -52,9 +56,10 @@ struct Look {
   }
   Image picture(const SimulatedInput& input = {}) {
     window->simulate(input);
-    window->begin_picture(no_hands);
+    window->begin_picture(frame);
     window->move_camera();
     window->follow_view_keys();
+    window->follow_part_keys();
     window->end_picture();
     return window->screenshot();
   }
@@ -153,6 +158,39 @@ void check_same_hues(const deform::Mesh& mesh) {
     }
   CHECK(compared > 500);
   CHECK(alike > compared * 97 / 100);
+}
+
+const Pixel accent_pixel{0xB4, 0x53, 0x2A}; // of the light theme
+
+/// Places of the pixels that have the accent colour, or nearly.
+std::vector<Vector2d> line_pixels(const Image& image) {
+  std::vector<Vector2d> found;
+  for (int y = 0; y < image.size().height; ++y)
+    for (int x = 0; x < image.size().width; ++x) {
+      int off = 0;
+      for (std::size_t channel = 0; channel < 3; ++channel)
+        off = std::max(off, std::abs(image.at(x, y)[channel] - accent_pixel[channel]));
+      if (off < 25) found.emplace_back(x + 0.5, y + 0.5);
+    }
+  return found;
+}
+
+double mean_difference(const Image& a, const Image& b) {
+  double sum = 0.0;
+  for (std::size_t at = 0; at < a.pixels().size(); ++at)
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      sum += std::abs(a.pixels()[at][channel] - b.pixels()[at][channel]);
+  return sum / (3.0 * static_cast<double>(a.pixels().size()));
+}
+
+/// Puts the tip of a hand's index finger there, on the stage. No other fingertip has a radius.
+void put_tip(SceneFrame& frame, const Vector3d& place_m, double radius_m) {
+  const hand::HandSkeleton skeleton(Side::right);
+  Eigen::Isometry3d wrist = Eigen::Isometry3d::Identity();
+  wrist.translation() = place_m - skeleton.pose({}, wrist).fingertip_positions().col(1);
+  const hand::HandPose pose = skeleton.pose({}, wrist);
+  frame.hands[1] = SceneHand{pose, pose.fingertip_positions()};
+  frame.radius_m = {0.0, radius_m, 0.0, 0.0, 0.0};
 }
 
 } // namespace
@@ -269,6 +307,149 @@ TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
     REQUIRE(beside);
     CHECK(is_clay(image.at(static_cast<int>(shadow->x()), static_cast<int>(shadow->y()))));
     CHECK(brightness_about(image, *shadow) < 0.8 * brightness_about(image, *beside));
+  }
+
+  TEST_CASE("each MatCap differs from the others, is the same each time, and shows the light") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Look look(test::sphere(40, 80, 1.0));
+    std::vector<Image> images;
+    SimulatedInput next;
+    next.shift = true;
+    next.taps = {GLFW_KEY_V};
+    for (std::size_t at = 0; at < material_names.size(); ++at) {
+      CHECK(look.window->material() == static_cast<viewer::Material>(at));
+      images.push_back(look.picture());
+      CHECK(look.picture() == images.back());
+      // As seen from the eye, the light comes from the left and from above.
+      const Camera& camera = look.window->camera();
+      const double radius = look.builder.size_m().x() / 2;
+      const Vector3d middle(0.0, radius, 0.0);
+      const Vector3d aside = camera.axes().transpose() * Vector3d(-0.45, 0.55, 0.0) * radius;
+      const auto lit = pixel_of(camera, middle + aside, size);
+      const auto unlit = pixel_of(camera, middle - aside, size);
+      REQUIRE(lit);
+      REQUIRE(unlit);
+      CHECK(brightness_about(images.back(), *lit) > 1.2 * brightness_about(images.back(), *unlit));
+      look.picture(next);
+      look.picture();
+    }
+    CHECK(look.window->material() == viewer::Material::lit);
+    for (std::size_t a = 0; a < images.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        CHECK(mean_difference(images[a], images[b]) > 2.0); // of all pixels; the ball has a quarter
+  }
+
+  TEST_CASE("a MatCap is in place of colours and textures") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    deform::Mesh mesh = test::cube_of_cells(3, true);
+    std::vector<Image> images;
+    for (const bool coloured : {false, true}) {
+      Look look(coloured ? test::with_six_colours(mesh) : mesh);
+      look.window->material() = viewer::Material::wax;
+      images.push_back(look.picture());
+      look.window->material() = viewer::Material::lit;
+      images.push_back(look.picture());
+    }
+    CHECK(images[0] == images[2]);
+    CHECK_FALSE(images[1] == images[3]);
+  }
+
+  TEST_CASE("a line is where a fingertip's radius meets the model, and nowhere else") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Look look(test::sphere(60, 120, 1.0));
+    look.window->parts().hands = false;
+    look.window->material() = viewer::Material::plaster;
+    look.picture();
+    CHECK(line_pixels(look.picture()).empty()); // no hand
+    const Camera& camera = look.window->camera();
+    const double radius = look.builder.size_m().x() / 2;
+    const Vector3d middle(0.0, radius, 0.0);
+    const Vector3d out = (camera.eye() - middle).normalized();
+    const Vector3d touched = middle + radius * out;
+    for (const double reach : {0.3 * radius, 0.6 * radius}) {
+      put_tip(look.frame, touched + look.builder.origin_m(), reach);
+      const std::vector<Vector2d> line = line_pixels(look.picture());
+      // The sphere about the tip meets the ball in a circle, seen from its axis.
+      const double behind = reach * reach / (2.0 * radius);
+      const double across = std::sqrt(reach * reach - behind * behind);
+      const double distance = (camera.eye() - touched).norm() + behind;
+      const double expected_px = across / distance / camera.tangent() * size.height / 2.0;
+      const auto centre = pixel_of(camera, touched, size);
+      REQUIRE(centre);
+      REQUIRE(line.size() > 6.0 * expected_px); // of 2 pi radii, two pixels wide
+      CHECK(line.size() < 20.0 * expected_px);
+      double sum = 0.0;
+      for (const Vector2d& place : line)
+        sum += (place - *centre).norm();
+      CHECK(sum / static_cast<double>(line.size()) == doctest::Approx(expected_px).epsilon(0.02));
+    }
+    look.window->parts().radii = false;
+    CHECK(line_pixels(look.picture()).empty());
+    look.window->parts().radii = true;
+    put_tip(look.frame, touched + 1.2 * radius * out + look.builder.origin_m(), radius);
+    CHECK(line_pixels(look.picture()).empty()); // too far away
+  }
+
+  TEST_CASE("the part that a hand would take has an outline around it, and the others none") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    deform::Mesh mesh = test::sphere(30, 60, 0.5);
+    const deform::Mesh one = mesh;
+    const auto count = static_cast<std::uint32_t>(one.vertices.cols());
+    mesh.vertices.conservativeResize(3, 2 * count);
+    mesh.vertices.rightCols(count) = one.vertices.colwise() + Vector3d(1.5, 0.0, 0.0);
+    for (std::size_t face = 0; face + 1 < one.face_starts.size(); ++face) {
+      for (auto at = one.face_starts[face]; at < one.face_starts[face + 1]; ++at)
+        mesh.face_corners.push_back(one.face_corners[at] + count);
+      mesh.face_starts.push_back(static_cast<std::uint32_t>(mesh.face_corners.size()));
+    }
+    Look look(mesh);
+    look.window->parts().ground = false;
+    look.window->material() = viewer::Material::plaster;
+    const auto parts = std::make_shared<const deform::ModelParts>(mesh, look.layout);
+    CHECK(line_pixels(look.picture()).empty());
+    look.window->set_parts_in_reach(parts, {deform::no_index, 1});
+    const Image image = look.picture();
+    const std::vector<Vector2d> line = line_pixels(image);
+    const double metre = look.builder.units_per_metre();
+    const Camera& camera = look.window->camera();
+    const auto centre = pixel_of(camera, Vector3d(0.75, 0.5, 0.0) / metre, size);
+    const auto top = pixel_of(
+        camera, Vector3d(0.75, 0.5, 0.0) / metre + 0.5 / metre * camera.axes().row(1).transpose(),
+        size);
+    REQUIRE(centre);
+    REQUIRE(top);
+    const double radius_px = (*top - *centre).norm();
+    CHECK(line.size() > 6.0 * radius_px);
+    for (const Vector2d& place : line) {
+      CHECK((place - *centre).norm() > 0.97 * radius_px - 2.0);
+      CHECK((place - *centre).norm() < 1.05 * radius_px + 4.0);
+    }
+    look.window->set_parts_in_reach(parts, {deform::no_index, deform::no_index});
+    CHECK(line_pixels(look.picture()).empty());
+  }
+
+  TEST_CASE("quick pictures, of merged triangles, hardly differ from fine ones") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    deform::Mesh mesh = test::sphere(160, 320, 1.0);
+    for (Eigen::Index at = 0; at < mesh.vertices.cols(); ++at) {
+      const Vector3d out = mesh.vertices.col(at);
+      mesh.vertices.col(at) *=
+          1.0 + 0.1 * std::sin(7.0 * out.x()) * std::sin(7.0 * out.y()) * std::sin(7.0 * out.z());
+    }
+    Look look(mesh);
+    for (const auto material : {viewer::Material::lit, viewer::Material::clay}) {
+      look.window->material() = material;
+      const Image fine = look.picture();
+      const Image quick = look.window->screenshot(true);
+      const double off = mean_difference(fine, quick);
+      CHECK(off > 0.0); // it is another picture
+      CHECK(off < 1.0);
+    }
   }
 
   TEST_CASE("the window shows the colours that pictures show") {

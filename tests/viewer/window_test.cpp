@@ -83,6 +83,10 @@ TEST_SUITE("window") {
       const Image by_processor = silhouette(scene, window.scene_window().camera(), size);
       CHECK(intersection_over_union(by_processor, window.scene_window().silhouette(size)) > 0.97);
     }
+    const PictureTimes& times = window.picture_times(); // of those that are said to be new
+    CHECK(times.whole.count() == 8);
+    CHECK(times.preparing.count() == 8);
+    CHECK(times.preparing.max() < times.whole.max());
     // And not the same whatever is drawn: the model before it was shaped, seen from elsewhere.
     Camera other = window.scene_window().camera();
     other.orbit(200.0, 0.0);

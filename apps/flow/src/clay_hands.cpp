@@ -326,8 +326,10 @@ void PartHands::update_contacts() noexcept {
 PartsState PartHands::state() const noexcept {
   PartsState state;
   state.count = parts_->count();
-  for (std::size_t at = 0; at < std::min(hands_.size(), state.held.size()); ++at)
+  for (std::size_t at = 0; at < std::min(hands_.size(), state.held.size()); ++at) {
     state.held[at] = mover_.held_by(at);
+    state.in_reach[at] = mover_.in_reach_of(at);
+  }
   state.chosen = chosen_;
   return state;
 }

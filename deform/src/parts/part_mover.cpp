@@ -126,6 +126,7 @@ public:
   bool holds() const noexcept { return holds_; }
   bool is_moved() const noexcept { return is_moved_; }
   std::uint32_t held_by(std::size_t hand) const noexcept { return hands_[hand].part; }
+  std::uint32_t in_reach_of(std::size_t hand) const noexcept { return hands_[hand].in_reach; }
 
   void take_hold(const BoundedShape& shape, std::span<const PartGrip> grips) noexcept {
     holds_ = true;
@@ -150,6 +151,7 @@ public:
 private:
   struct Hand {
     std::uint32_t part = no_index;
+    std::uint32_t in_reach = no_index;
     bool was_closed = false;
     Isometry3d from = Isometry3d::Identity(); ///< its frame when base_ was as it is
     Isometry3d last = Isometry3d::Identity(); ///< the part's motion, of the first that holds it
@@ -166,8 +168,10 @@ private:
     Hand& hand = hands_[number];
     const bool is_closed = grips[number].is_closed;
     const bool was_closed = std::exchange(hand.was_closed, is_closed);
+    hand.in_reach =
+        is_closed && was_closed ? no_index : part_at(shape, grips[number].frame.translation());
     if (is_closed && !was_closed) {
-      hand.part = part_at(shape, grips[number].frame.translation());
+      hand.part = std::exchange(hand.in_reach, no_index);
       if (hand.part != no_index) restart(hand.part, shape.shape, grips);
     } else if (!is_closed && hand.part != no_index) {
       const std::uint32_t part = std::exchange(hand.part, no_index);
@@ -192,13 +196,21 @@ private:
       }
     }
     if (part == no_index || is_down_[part]) return no_index;
-    return least <= reach_ * reach_ || is_in_box(shape.shape, part, at) ? part : no_index;
+    return least <= reach_ * reach_ || is_in_box(shape, part, at) ? part : no_index;
   }
 
-  bool is_in_box(const BlockShape& shape, std::uint32_t part, const Vector3f& at) const noexcept {
+  bool is_in_box(const BoundedShape& shape, std::uint32_t part, const Vector3f& at) const noexcept {
     Eigen::AlignedBox3f box;
+    for (const ModelParts::Block& block : parts_->blocks_of(part)) { // at most as large
+      const auto& sides = shape.bounds[block.number].sides;
+      box.extend(Vector3f(sides[0], sides[1], sides[2]));
+      box.extend(-Vector3f(sides[4], sides[5], sides[6]));
+    }
+    if (!box.contains(at)) return false; // as in most ticks
+    box.setEmpty();
     for (const ModelParts::Block& block : parts_->blocks_of(part))
-      block.each_lane([&](std::size_t lane) { box.extend(vertex_in(shape[block.number], lane)); });
+      block.each_lane(
+          [&](std::size_t lane) { box.extend(vertex_in(shape.shape[block.number], lane)); });
     return box.contains(at);
   }
 
@@ -305,6 +317,10 @@ bool PartMover::is_moved() const noexcept {
 
 std::uint32_t PartMover::held_by(std::size_t hand) const noexcept {
   return work_->held_by(hand);
+}
+
+std::uint32_t PartMover::in_reach_of(std::size_t hand) const noexcept {
+  return work_->in_reach_of(hand);
 }
 
 ModelParts::ModelParts(const Mesh& mesh, const BlockLayout& layout) {

@@ -100,6 +100,8 @@ public:
   bool is_moved() const noexcept;
   /// Returns the part that a hand holds; no_index: none.
   std::uint32_t held_by(std::size_t hand) const noexcept;
+  /// Returns the part that an open hand would grab now; no_index: none.
+  std::uint32_t in_reach_of(std::size_t hand) const noexcept;
 
 private:
   class Work;

@@ -146,6 +146,8 @@ struct PartsState {
   std::uint32_t count = 0; ///< the number of parts; 0 in other modes
   /// The part that each present hand holds, left hand first; no_index: none.
   std::array<std::uint32_t, 2> held{deform::no_index, deform::no_index};
+  /// The part that each present hand would grab, if it is open; no_index: none.
+  std::array<std::uint32_t, 2> in_reach{deform::no_index, deform::no_index};
   /// The part that a hand grabbed last; no_index: none of this model yet.
   std::uint32_t chosen = deform::no_index;
 
