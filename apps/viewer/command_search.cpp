@@ -41,7 +41,7 @@ const commands::Row* CommandSearch::draw(std::uint8_t places, const Now& now, co
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(0.5F * all.x, 0.2F * all.y), ImGuiCond_Appearing,
                           ImVec2(0.5F, 0.0F));
-  ImGui::SetNextWindowSize(ImVec2(std::min(em(34.0F), all.x), 0.0F));
+  ImGui::SetNextWindowSize(ImVec2(std::min(em(42.0F), all.x), 0.0F));
   if (!ImGui::BeginPopup(title)) return nullptr;
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1.0F);
@@ -67,7 +67,7 @@ const commands::Row* CommandSearch::draw(std::uint8_t places, const Now& now, co
     if (at == chosen_ && ImGui::IsWindowAppearing()) ImGui::SetScrollHereY();
     ImGui::SameLine(em(9.0F));
     ImGui::TextDisabled("%s", commands::keys_of(row).c_str());
-    ImGui::SameLine(em(16.0F));
+    ImGui::SameLine(em(18.5F));
     ImGui::TextDisabled("%s", std::string(row.help).c_str());
   }
   ImGui::EndChild();
