@@ -25,10 +25,10 @@ using calibrate::GuideAction;
 using calibrate::GuideNotice;
 using viewer::button;
 using viewer::em;
+using viewer::gap_em;
 
 namespace {
 
-constexpr float gap_em = 0.7F; // from the window's edges
 constexpr float width_em = 21.0F;
 
 ImVec4 success() {

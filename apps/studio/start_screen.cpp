@@ -19,12 +19,12 @@
 namespace nendo::studio {
 
 using viewer::em;
+using viewer::gap_em;
 namespace fs = std::filesystem;
 
 namespace {
 
 constexpr float panel_part = 0.62F; // of the window's width
-constexpr float gap_em = 0.7F;
 constexpr float picture_ratio = 4.0F / 3.0F;
 
 struct ModeCard {

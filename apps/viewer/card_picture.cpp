@@ -44,7 +44,7 @@ CardPicture::~CardPicture() {
 }
 
 bool picture_card(std::string_view name, const CardPicture* picture, float ratio, float width,
-                    bool is_chosen) {
+                  bool is_chosen) {
   const std::string text(name);
   const float gap = em(0.35F), height = width / ratio;
   const ImVec2 low = ImGui::GetCursorScreenPos();

@@ -26,6 +26,6 @@ private:
 /// A button `width` pixels wide with a picture, and its name below. Null: an empty frame of
 /// `ratio` times its height. Tests press it by its name.
 bool picture_card(std::string_view name, const CardPicture* picture, float ratio, float width,
-                    bool is_chosen = false);
+                  bool is_chosen = false);
 
 } // namespace nendo::viewer

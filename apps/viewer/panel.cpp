@@ -22,7 +22,6 @@ using flow::Request;
 
 namespace {
 
-constexpr float gap_em = 0.7F; // from the window's edges
 constexpr float width_em = 19.0F;
 constexpr const char* mouse_words =
     "right drag on a hand moves it, with shift turns it, with the wheel pushes and pulls it;\n"
@@ -218,7 +217,6 @@ void LiveWindow::Panel::sections(const flow::Frame& frame, const Gauges& gauges,
     settings.draw(pending.now);
     masks(editor, now, commands);
   }
-  if (section("History", "The steps so far; a click goes to one.", true)) history(frame, commands);
   if (section("Model", "Changes of the model itself, which undo reverts.", false))
     buttons_of(commands::Buttons::model, now, commands);
   if (!edits) draw_puppet();
@@ -245,6 +243,21 @@ void LiveWindow::Panel::draw(const flow::Frame& frame, const Gauges& gauges, Sce
                        ImGuiWindowFlags_NoNavInputs | ImGuiWindowFlags_NoFocusOnAppearing);
   folded = ImGui::IsWindowCollapsed();
   if (open) sections(frame, gauges, window, editor, commands);
+  ImGui::End();
+  if (!folded) draw_history(frame, top, commands);
+}
+
+/// At the window's right, where tools of any length leave it in sight.
+void LiveWindow::Panel::draw_history(const flow::Frame& frame, float top, Commands& commands) {
+  const float width = em(12.0F);
+  ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - em(gap_em), top), ImGuiCond_Always,
+                          ImVec2(1.0F, 0.0F));
+  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0.0F), ImVec2(width, em(20.0F)));
+  ImGui::Begin("history", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
+  if (section("History", "The steps so far; a click goes to one.", true)) history(frame, commands);
   ImGui::End();
 }
 

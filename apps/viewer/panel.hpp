@@ -50,7 +50,7 @@ struct LiveWindow::Panel {
   int covered_px() const;
   void follow_settings(const flow::LoopSettings& current);
   void follow(const flow::Frame& frame, double rate_hz);
-  /// Draws the panel, in one window of ImGui.
+  /// Draws the panel, and the history beside it.
   void draw(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
             PuppetEditor& editor, Commands& commands);
   /// Handles keys, and draws the list of commands.
@@ -63,7 +63,8 @@ private:
   /// Draws the buttons of a group, two per line.
   void buttons_of(commands::Buttons group, const commands::Situation& now, Commands& commands);
   static void parts(SceneWindow& window);
-  /// Lists the history's steps. A click undoes or redoes up to a step.
+  /// Lists the history's steps, in a window of its own. A click undoes or redoes up to a step.
+  void draw_history(const flow::Frame& frame, float top, Commands& commands);
   void history(const flow::Frame& frame, Commands& commands);
   /// Controls symmetry, and masks of fingertips.
   void masks(PuppetEditor& editor, const commands::Situation& now, Commands& commands);

@@ -13,6 +13,9 @@ namespace nendo::viewer {
 /// own if neither is installed.
 void use_theme(Theme theme, float scale);
 
+/// The gap between panels and the window's edges, for em().
+inline constexpr float gap_em = 0.7F;
+
 /// Returns a length in multiples of the font's size, so that layouts follow the scale. Also between
 /// pictures.
 inline float em(float count) {

@@ -52,7 +52,6 @@ const render::SceneHand* bendable_hand(const TimelineView& view,
 } // namespace
 
 struct TimelineWindow::Panel {
-  static constexpr float gap_em = 0.7F;
   static constexpr float width_em = 20.0F;
 
   DopeSheetWidget strip;
@@ -209,7 +208,7 @@ TimelineWindow::open(const std::string& title, const WindowLook& look, const std
 EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFrame& scene_frame) {
   EditActions actions;
   window_->leave_below(DopeSheetWidget::height_for(view.lanes.size()));
-  window_->leave_left(static_cast<int>(em(Panel::gap_em + Panel::width_em)));
+  window_->leave_left(static_cast<int>(em(gap_em + Panel::width_em)));
   window_->begin_picture(scene_frame);
   if (!move_tip(view, scene_frame, actions)) window_->move_camera();
   mark_tips(view, scene_frame);

@@ -23,6 +23,7 @@
 #include "support/six_colours.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_meshes.hpp"
+#include "viewer/command_widgets.hpp"
 #include "viewer/pointing.hpp"
 #include "viewer/scene_window.hpp"
 
@@ -59,7 +60,8 @@ struct Look {
     window->begin_picture(frame);
     window->move_camera();
     window->follow_view_keys();
-    window->follow_part_keys();
+    for (const commands::Row& row : commands::table())
+      if ((row.places & commands::in_window) != 0 && is_struck(row)) window->execute(row.name);
     window->end_picture();
     return window->screenshot();
   }
