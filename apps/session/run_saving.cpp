@@ -1,5 +1,6 @@
 #include "session/run_saving.hpp"
 
+#include <cstring>
 #include <filesystem>
 #include <utility>
 #include <variant>
@@ -54,8 +55,13 @@ bool RunSaving::is_modified(const flow::Frame& frame) {
   if (frame.ticks_run == 0) return false;
   if (!clean_) clean_ = Version{frame.model, frame.shape};
   if (clean_->model != frame.model) return true;
-  for (std::size_t block = 0; block < frame.shape.block_count(); ++block)
-    if (clean_->shape.stamp(block) != frame.shape.stamp(block)) return true;
+  for (std::size_t block = 0; block < frame.shape.block_count(); ++block) {
+    if (clean_->shape.stamp(block) == frame.shape.stamp(block)) continue;
+    // A block may be written again as it was.
+    if (std::memcmp(&clean_->shape[block], &frame.shape[block], sizeof(deform::VertexBlock)) != 0)
+      return true;
+    clean_->shape.follow(frame.shape, block);
+  }
   return false;
 }
 

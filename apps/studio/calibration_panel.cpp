@@ -123,21 +123,12 @@ ImVec4 screen_colour(Certainty certainty) {
   return {encoded(colour.x()), encoded(colour.y()), encoded(colour.z()), 1.0F};
 }
 
-/// Returns the pixels of a place in the scene, from the window's top left corner.
-ImVec2 pixel_of(const viewer::SceneWindow& window, const Eigen::Vector3d& place_m) {
-  const render::Size size = window.scene_size();
-  const Eigen::Vector4d clip =
-      window.camera().projection(1.0 * size.width / size.height) * place_m.homogeneous();
-  return {static_cast<float>((clip.x() / clip.w() + 1.0) / 2.0 * size.width),
-          static_cast<float>((1.0 - clip.y() / clip.w()) / 2.0 * size.height)};
-}
-
 void centred_words(const viewer::SceneWindow& window, const Eigen::Vector3d& place_m,
                    const char* words) {
-  const ImVec2 at = pixel_of(window, place_m);
+  const Eigen::Vector2f at = pixel_of(window.camera(), window.scene_size(), place_m).cast<float>();
   const float width = ImGui::CalcTextSize(words).x;
-  ImGui::GetBackgroundDrawList()->AddText({at.x - width / 2.0F, at.y}, IM_COL32(45, 50, 56, 255),
-                                          words);
+  ImGui::GetBackgroundDrawList()->AddText({at.x() - width / 2.0F, at.y()},
+                                          IM_COL32(45, 50, 56, 255), words);
 }
 
 } // namespace
@@ -294,7 +285,11 @@ void CalibrationScreen::after_panel() {
   legend();
   ImGui::Separator();
   if (!findings_.empty()) {
-    ImGui::BeginChild("findings", ImVec2(0.0F, em(findings_.size() > 2 ? 15.0F : 11.5F)), true);
+    // The buttons below stay visible in a small window.
+    const float rest = em(problem_.empty() ? 27.0F : 32.0F);
+    const float high = std::clamp(ImGui::GetMainViewport()->WorkSize.y - rest, em(4.0F),
+                                  em(findings_.size() > 2 ? 15.0F : 11.5F));
+    ImGui::BeginChild("findings", ImVec2(0.0F, high), true);
     for (const calibrate::Finding& finding : findings_) {
       wrapped(finding.text);
       faint(finding.remedy);
@@ -344,7 +339,10 @@ void CalibrationScreen::draw_panel(const viewer::SceneWindow& window) {
   ImGui::Begin(title.c_str(), nullptr,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoNavInputs);
-  if (!problem_.empty()) wrapped(problem_, viewer::warning());
+  if (!problem_.empty()) {
+    wrapped(problem_, viewer::warning());
+    viewer::note_control("problem", "");
+  }
   switch (stage_) {
   case Stage::before:
     before_panel();
@@ -390,11 +388,30 @@ void CalibrationScreen::draw_banner(const viewer::SceneWindow& window) const {
   viewer::note_control(words.state, "");
   ImGui::PopFont();
   ImGui::End();
-  if (stage_ != Stage::after) return;
+}
+
+/// What the two hands are, and numbers for the joint under the mouse.
+void CalibrationScreen::draw_captions(const viewer::SceneWindow& window) const {
   const Eigen::Vector3d right = window.camera().axes().row(0).transpose();
   const Eigen::Vector3d low(0.0, -0.062, 0.0);
-  centred_words(window, low - 0.11 * right, "how sure each joint is");
-  centred_words(window, low + 0.11 * right, "your hand, calibrated");
+  centred_words(window, low - aside_m * right, "how sure each joint is");
+  centred_words(window, low + aside_m * right, "your hand, calibrated");
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantCaptureMouse || !finished_) return;
+  const Eigen::Vector2d mouse(static_cast<double>(io.MousePos.x),
+                              static_cast<double>(io.MousePos.y));
+  const auto sensor =
+      sensor_at(mouse, window.camera(), window.scene_size(), report_pose_, glove_.info().sensors);
+  if (!sensor) return;
+  const auto certainty = calibrate::certainty_of(*finished_, *sensor);
+  std::string text =
+      std::string(calibrate::in_words(*sensor)) + ": " + std::string(name_of(certainty));
+  const hand::SensorFit& fit = finished_->fit.sensors[index_of(*sensor)];
+  if (certainty != Certainty::estimated)
+    text += ". Sure to " + gloves::fixed(to_degrees(fit.deviation_rad), 1) +
+            " degrees; the poses are " + gloves::fixed(to_degrees(fit.residual_rad), 1) +
+            " degrees off.";
+  ImGui::SetTooltip("%s", text.c_str());
 }
 
 /// The ring about the wrist: while joints show their ranges, how many have; and then, how long the
@@ -403,9 +420,12 @@ void CalibrationScreen::draw_ring(const viewer::SceneWindow& window) const {
   if (guided_->is_ending()) return;
   const float share =
       static_cast<float>(guided_->has_begun() ? guide_->capture().progress() : shown_ranges());
-  const ImVec2 middle = pixel_of(window, Eigen::Vector3d::Zero());
-  const ImVec2 above = pixel_of(window, {0.0, 0.058, 0.0});
-  const float radius = std::abs(above.y - middle.y), width = radius / 5.0F;
+  const auto pixel = [&](const Eigen::Vector3d& place_m) -> Eigen::Vector2f {
+    return pixel_of(window.camera(), window.scene_size(), place_m).cast<float>();
+  };
+  const Eigen::Vector2f wrist = pixel(Eigen::Vector3d::Zero());
+  const ImVec2 middle(wrist.x(), wrist.y());
+  const float radius = (pixel({0.0, 0.058, 0.0}) - wrist).norm(), width = radius / 5.0F;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   constexpr int segments = 96;
   list.AddCircle(middle, radius, IM_COL32(90, 98, 106, 70), segments, width);

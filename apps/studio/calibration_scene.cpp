@@ -218,6 +218,31 @@ std::vector<Surface> HandPainter::report(const hand::HandPose& pose,
   return surfaces;
 }
 
+Eigen::Vector2d pixel_of(const render::Camera& camera, render::Size size,
+                         const Vector3d& place_m) noexcept {
+  const Eigen::Vector4d clip =
+      camera.projection(1.0 * size.width / size.height) * place_m.homogeneous();
+  return {(clip.x() / clip.w() + 1.0) / 2.0 * size.width,
+          (1.0 - clip.y() / clip.w()) / 2.0 * size.height};
+}
+
+std::optional<Sensor> sensor_at(const Eigen::Vector2d& pixel, const render::Camera& camera,
+                                render::Size size, const hand::HandPose& pose, SensorMask sensors) {
+  const Vector3d aside = static_cast<double>(ball_radius_m) * camera.axes().row(0).transpose();
+  std::optional<Sensor> nearest;
+  double least = 1.0; // of a ball's radius
+  for (const Sensor sensor : sensors) {
+    const Vector3d place = place_of(sensor, pose);
+    const Eigen::Vector2d middle = pixel_of(camera, size, place);
+    const double radius = (pixel_of(camera, size, place + aside) - middle).norm();
+    const double share = (pixel - middle).norm() / radius;
+    if (share >= least) continue;
+    least = share;
+    nearest = sensor;
+  }
+  return nearest;
+}
+
 Surface arrows(const hand::HandPose& live, const hand::HandPose& asked, const Fingers& marked) {
   constexpr double visible_m = 0.015;
   Surface surface{{}, {}, {}, arrow_colour};

@@ -3,7 +3,7 @@
 // and the palm towards +z, so that the wearer's own view is a turn about the vertical axis.
 
 #include <array>
-#include <span>
+#include <optional>
 #include <vector>
 
 #include <nendo/hand/calibration_poses.hpp>
@@ -12,6 +12,7 @@
 #include "calibrate/findings.hpp"
 #include "render/camera.hpp"
 #include "render/hand_skin.hpp"
+#include "render/image.hpp"
 #include "render/surface.hpp"
 
 namespace nendo::studio {
@@ -50,6 +51,13 @@ private:
   Side side_;
   render::HandSkin skin_;
 };
+
+/// Returns the pixels of a place in the scene, from the window's top left corner.
+Eigen::Vector2d pixel_of(const render::Camera& camera, render::Size size,
+                         const Eigen::Vector3d& place_m) noexcept;
+/// Returns the sensor whose ball in HandPainter::report() is at those pixels.
+std::optional<Sensor> sensor_at(const Eigen::Vector2d& pixel, const render::Camera& camera,
+                                render::Size size, const hand::HandPose& pose, SensorMask sensors);
 
 /// Returns arrows from the tips of the marked fingers to where they should be, if that is far
 /// enough to see.

@@ -20,7 +20,6 @@ namespace {
 
 constexpr double one_hand_m = 0.24;
 constexpr double two_hands_m = 0.46;
-constexpr double aside_m = 0.11;
 
 hand::HandPose moved(hand::HandPose pose, const Eigen::Isometry3d& by) {
   for (Eigen::Isometry3d& joint : pose.joints)
@@ -220,6 +219,26 @@ double CalibrationScreen::shown_ranges() const {
   return all == 0 ? 1.0 : static_cast<double>(moved) / all;
 }
 
+/// Returns what keeps the pose from being right, in words; empty if nothing does.
+std::string CalibrationScreen::trouble() const {
+  if (!advice_.empty()) return advice_.front().text + ".";
+  const hand::PoseCapture& capture = guide_->capture();
+  const std::string sensor = capture.troubled().bits == 0
+                                 ? "a sensor"
+                                 : std::string(calibrate::in_words(*capture.troubled().begin()));
+  if (capture.state() == CaptureState::noisy)
+    return "Too noisy: " + sensor +
+           ". Does the glove sit well? Leave sensor out continues without it.";
+  if (capture.state() == CaptureState::saturated)
+    return "At an end of its range: " + sensor +
+           ". Bend it less. If it stays there, leave the sensor out.";
+  if (capture.state() == CaptureState::unchanged && guide_->implausible_sensor())
+    return "That is not it: look at the " +
+           std::string(calibrate::in_words(*guide_->implausible_sensor())) +
+           ". If the pose before was not right, press Back.";
+  return {};
+}
+
 CalibrationScreen::Banner CalibrationScreen::guide_banner() const {
   if (guided_->is_ending()) return {"All poses are taken.", "Computing ..."};
   if (guided_->is_silent(HostClock::now()))
@@ -228,52 +247,20 @@ CalibrationScreen::Banner CalibrationScreen::guide_banner() const {
     return {"Bend and stretch every joint as far as you can, a few times.",
             shown_ranges() < 0.8 ? "Do as the blue hand does, with the wrist and the thumb as well."
                                  : "Enough joints have shown how far they go. Press Begin."};
-  Banner banner{std::string(hand::pose_of(guide_->asked()).instruction), {}};
-  const hand::PoseCapture& capture = guide_->capture();
-  const std::string sensor = capture.troubled().bits == 0
-                                 ? "a sensor"
-                                 : std::string(calibrate::in_words(*capture.troubled().begin()));
-  banner.warns = true;
-  switch (capture.state()) {
-  case CaptureState::noisy:
-    banner.state = "Too noisy: " + sensor +
-                   ". Does the glove sit well? Leave sensor out continues "
-                   "without it.";
-    return banner;
-  case CaptureState::saturated:
-    banner.state = "At an end of its range: " + sensor +
-                   ". Bend it less. If it stays there, leave "
-                   "the sensor out.";
-    return banner;
-  default:
-    break;
-  }
-  if (!advice_.empty()) {
-    banner.state = advice_.front().text + ".";
-    return banner;
-  }
-  if (capture.state() == CaptureState::unchanged && guide_->implausible_sensor()) {
-    banner.state = "That is not it: look at the " +
-                   std::string(calibrate::in_words(*guide_->implausible_sensor())) +
-                   ". If the pose before was not right, press Back.";
-    return banner;
-  }
-  banner.warns = false;
-  switch (capture.state()) {
+  const std::string instruction(hand::pose_of(guide_->asked()).instruction);
+  if (const std::string wrong = trouble(); !wrong.empty()) return {instruction, wrong, true};
+  switch (guide_->capture().state()) {
   case CaptureState::moving:
-    banner.state = "Hold still.";
-    break;
+    return {instruction, "Take the blue hand's pose, and hold still."};
   case CaptureState::settling:
   case CaptureState::held:
-    banner.state = "Good, hold it.";
-    break;
+    return {instruction, "Good, hold it."};
   case CaptureState::unchanged:
-    banner.state = guide_->has_any() ? "Taken. Now take this pose." : "Take the blue hand's pose.";
-    break;
+    return {instruction,
+            guide_->has_any() ? "Taken. Now take this pose." : "Take the blue hand's pose."};
   default:
-    banner.state = "Waiting for the glove.";
+    return {instruction, "Waiting for the glove."};
   }
-  return banner;
 }
 
 CalibrationScreen::Banner CalibrationScreen::banner() const {
@@ -355,10 +342,9 @@ void CalibrationScreen::draw_asked_pose(viewer::SceneWindow& window) {
 
 void CalibrationScreen::draw_result(viewer::SceneWindow& window) {
   const Eigen::Vector3d right = window.camera().axes().row(0).transpose();
-  const hand::HandPose open =
-      moved(render::HandSkin::bind_pose(painter_.side()), upright(-aside_m * right));
+  report_pose_ = moved(render::HandSkin::bind_pose(painter_.side()), upright(-aside_m * right));
   const SensorMask sensors = glove_.info().sensors;
-  for (render::Surface& surface : painter_.report(open, *finished_, sensors))
+  for (render::Surface& surface : painter_.report(report_pose_, *finished_, sensors))
     window.add(std::move(surface));
   if (!latest_) return;
   const hand::JointAngles angles = live_angles(finished_->wearer.calibration);
@@ -409,6 +395,7 @@ std::optional<Result<CalibrationOutcome>> CalibrationScreen::show(viewer::SceneW
   draw_panel(window);
   draw_banner(window);
   if (stage_ == Stage::guiding) draw_ring(window);
+  if (stage_ == Stage::after) draw_captions(window);
   window.end_picture();
   if (window.take_close_request()) leave();
   return std::move(outcome_);

@@ -51,6 +51,7 @@ public:
   void leave();
 
 private:
+  static constexpr double aside_m = 0.11;  ///< distance of the two hands from the middle
   static constexpr double touch_m = 0.004; ///< pads that are nearer touch
   enum class Stage : std::uint8_t { before, guiding, fitting, after };
   /// What the words above the hands say.
@@ -78,6 +79,7 @@ private:
   double shown_ranges() const;
   Banner banner() const;
   Banner guide_banner() const;
+  std::string trouble() const;
   // calibration_panel.cpp
   int covered_px() const;
   void draw_panel(const viewer::SceneWindow& window);
@@ -92,6 +94,7 @@ private:
   void guide_keys();
   void draw_banner(const viewer::SceneWindow& window) const;
   void draw_ring(const viewer::SceneWindow& window) const;
+  void draw_captions(const viewer::SceneWindow& window) const;
 
   driver::Glove& glove_;
   SampleRing ring_{1024};
@@ -120,6 +123,7 @@ private:
   std::future<Result<calibrate::FinishedCalibration>> fitting_;
   std::optional<calibrate::FinishedCalibration> finished_;
   std::vector<calibrate::Finding> findings_;
+  hand::HandPose report_pose_{};                     ///< the hand that shows certainties
   std::optional<hand::HandSkeleton> skeleton_;       ///< the wearer's
   std::array<std::optional<double>, 4> nearest_m_{}; ///< from the thumb's pad to each finger's
   std::optional<Result<CalibrationOutcome>> outcome_;

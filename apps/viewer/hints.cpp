@@ -22,11 +22,11 @@ constexpr std::array hints{
 
 } // namespace
 
-bool draw_hints(int covered_px, float above_px) {
+bool draw_hints(int covered_px, float below_px) {
   const float left = static_cast<float>(covered_px);
   const float middle = (left + ImGui::GetIO().DisplaySize.x) / 2.0F;
-  ImGui::SetNextWindowPos(ImVec2(middle, above_px + em(0.7F)), ImGuiCond_Always,
-                          ImVec2(0.5F, 0.0F));
+  const float bottom = ImGui::GetIO().DisplaySize.y - below_px - em(gap_em);
+  ImGui::SetNextWindowPos(ImVec2(middle, bottom), ImGuiCond_Always, ImVec2(0.5F, 1.0F));
   ImGui::Begin("hints", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |

@@ -3,8 +3,8 @@
 
 namespace nendo::viewer {
 
-/// Draws the hints at the top of the picture, `above_px` below the window's top and beside what
-/// covers `covered_px` at its left. Returns true when the user is done with them.
-bool draw_hints(int covered_px, float above_px);
+/// Draws the hints at the bottom of the picture, `below_px` above the window's, beside what covers
+/// `covered_px` at its left. Returns true when the user is done with them.
+bool draw_hints(int covered_px, float below_px);
 
 } // namespace nendo::viewer

@@ -269,7 +269,7 @@ void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Comm
                     : panel_->note.empty()  ? gauges.report
                                             : panel_->note;
   draw_status_bar(frame, gauges, panel_->message);
-  if (hints_ && draw_hints(panel_->covered_px(), window_->above_px())) hints_ = false;
+  if (hints_ && draw_hints(panel_->covered_px(), status_bar_height())) hints_ = false;
   if (const auto change = panel_->pending.ask()) commands.push_back(*change);
 }
 

@@ -46,11 +46,6 @@ public:
   void put() {
     const ImGuiIO& io = ImGui::GetIO();
     if (const auto place = std::exchange(clicked_, {})) put_pointer(place->x, place->y);
-    // A field gets letters as text. Their keys would be commands when it is closed.
-    if (io.WantTextInput)
-      std::erase_if(waiting_, [](const Tap& tap) {
-        return tap.key <= GLFW_KEY_GRAVE_ACCENT && !tap.control;
-      });
     const int before = std::exchange(last_, 0);
     while (!waiting_.empty()) {
       const Tap tap = waiting_.front();
@@ -68,6 +63,11 @@ public:
   /// Sets the keyboard back to the state that the back end reported. It must be called after the
   /// picture. The back end reports the pointer for each picture, so the pointer needs no reset.
   void reset_keyboard() {
+    // A field gets letters as text. Their keys would be commands when it is closed.
+    if (ImGui::GetIO().WantTextInput)
+      std::erase_if(waiting_, [](const Tap& tap) {
+        return tap.key <= GLFW_KEY_GRAVE_ACCENT && !tap.control;
+      });
     if (!beside_) return;
     if (beside_->key != 0) put_key(beside_->key, false);
     put_modifiers(beside_->control, beside_->shift);

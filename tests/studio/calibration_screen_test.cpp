@@ -13,6 +13,7 @@
 #include "support/pty_host.hpp"
 #include "support/restraint.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/text_files.hpp"
 
 namespace calibration_screen_test {
 
@@ -273,6 +274,42 @@ TEST_SUITE("calibration_screen" * doctest::skip(!test::restraint_is_counted)) {
     REQUIRE(person.outcome);
     CHECK_FALSE((*person.outcome)->finished);
     CHECK(store.files() == 0);
+  }
+
+  TEST_CASE("what cannot be written is said, and can be discarded") {
+    const MemoryScreen memory;
+    if (!memory.is_there()) return;
+    const Store store;
+    const auto taken = store.folder.path() / "file";
+    write_file(taken, "no folder");
+    calibrate::CalibrationRequest request{"eve", calibrate::CalibrationKind::quick};
+    request.out = taken / "eve.toml";
+    Person person(2002, {{800, 600}, Theme::light, 1.0F}, request);
+    person.begin(quick);
+    for (const PoseId pose : hand::quick_poses())
+      person.take(pose);
+    REQUIRE(person.waits_for("Keep"));
+    person.press("Keep");
+    CHECK_FALSE(person.outcome);
+    person.look(2);
+    CHECK(Visitor::find("problem") != nullptr);
+    person.press("Discard");
+    CHECK(person.outcome);
+    CHECK(store.files() == 1);
+  }
+
+  TEST_CASE("the joint under the mouse is the one whose ball is there") {
+    for (const Side side : {Side::left, Side::right}) {
+      const hand::HandPose pose = hand::HandSkeleton(side).pose({}, studio::upright());
+      constexpr render::Size size{1280, 720};
+      const render::Camera camera =
+          studio::camera_for(studio::view_of(PoseId::pinch_little, side), 0.4, 1.2);
+      const Eigen::Vector3d knuckle = pose[hand::Joint::ring_intermediate].translation();
+      const Eigen::Vector2d pixel = studio::pixel_of(camera, size, knuckle);
+      CHECK(studio::sensor_at(pixel, camera, size, pose, sensors_22) == Sensor::ring_pip);
+      const Eigen::Vector2d beside = pixel + Eigen::Vector2d(0.0, 25.0);
+      CHECK_FALSE(studio::sensor_at(beside, camera, size, pose, sensors_22));
+    }
   }
 
   TEST_CASE("no two controls overlap and no text is cut, in any step, at any size and scale") {
