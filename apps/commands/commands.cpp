@@ -76,6 +76,13 @@ const Row* named(std::string_view name) noexcept {
   return found == rows.end() ? nullptr : found;
 }
 
+const Row* row_changing(std::string_view setting) noexcept {
+  const auto* const found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
+    return (row.places & on_page) != 0 && row.setting == setting;
+  });
+  return found == rows.end() ? nullptr : found;
+}
+
 const Row* with_key(std::string_view key, std::uint8_t places) noexcept {
   const auto* const found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
     return (row.places & places) != 0 && row.has_key(key);

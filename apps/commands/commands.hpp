@@ -86,6 +86,8 @@ std::span<const Row> table() noexcept;
 /// Return the row of that name, or with that key in one of the places; null: none.
 const Row* named(std::string_view name) noexcept;
 const Row* with_key(std::string_view key, std::uint8_t places) noexcept;
+/// Returns the first row on the page that changes a setting of flow/setting.hpp; null: none does.
+const Row* row_changing(std::string_view setting) noexcept;
 /// Returns the name of the row that makes this type of command, such as "wire"; without a row,
 /// "role" or "a command".
 std::string_view name_of(const flow::Command& command) noexcept;
@@ -120,6 +122,16 @@ inline constexpr const char* no_trackers = "No tracker moves a hand here; start 
 inline constexpr const char* no_recording = "There is no recording to mark; begin one with t.";
 inline constexpr const char* nothing_kept = "Nothing is kept in memory; start with --keep-last "
                                             "60s.";
+
+/// A hint for the first start, in the window and on the page.
+struct Hint {
+  std::string_view keys, text;
+};
+inline constexpr std::array hints{
+    Hint{"g, l", "The hands grab the model, and release it."},
+    Hint{"u, r", "Undo and redo; a click in the history goes to any step."},
+    Hint{"drag", "Turns the view; with shift it shifts it, and the wheel zooms."},
+};
 
 /// Returns the keys of a row, separated by commas: "u, Ctrl Z".
 std::string keys_of(const Row& row);

@@ -422,7 +422,8 @@ inline constexpr std::array run_rows{
     own_row("view top", keys("7"), "Looks from the top, with Ctrl from the bottom.", in_views),
     own_row("frame all", keys("Home"), "Shows the whole model.", in_views),
     own_row("fold panel", keys("p"), "Folds or unfolds the panel.", in_window | on_page),
-    own_row("search", keys("F3"), "Searches all commands by words.", in_window | in_timeline),
+    own_row("search", keys("F3"), "Searches all commands by words.",
+            in_window | in_timeline | on_page),
     own_row("list keys", keys("?"), "Lists the keys.", everywhere | in_timeline),
 };
 

@@ -1,26 +1,12 @@
 #include "viewer/hints.hpp"
 
-#include <array>
-
 #include <imgui.h>
 
+#include "commands/commands.hpp"
 #include "viewer/controls.hpp"
 #include "viewer/theme.hpp"
 
 namespace nendo::viewer {
-namespace {
-
-struct Hint {
-  const char* keys;
-  const char* text;
-};
-constexpr std::array hints{
-    Hint{"g, l", "The hands grab the model, and release it."},
-    Hint{"u, r", "Undo and redo; a click in the history goes to any step."},
-    Hint{"drag", "Turns the view; with shift it shifts it, and the wheel zooms."},
-};
-
-} // namespace
 
 bool draw_hints(int covered_px, float below_px) {
   const float left = static_cast<float>(covered_px);
@@ -31,10 +17,10 @@ bool draw_hints(int covered_px, float below_px) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
-  for (const Hint& hint : hints) {
-    ImGui::TextColored(accent(), "%s", hint.keys);
+  for (const auto& [keys, text] : commands::hints) {
+    ImGui::TextColored(accent(), "%s", keys.data());
     ImGui::SameLine(em(4.0F));
-    ImGui::TextUnformatted(hint.text);
+    ImGui::TextUnformatted(text.data());
   }
   ImGui::TextDisabled("F3 finds any command, ? lists the keys.");
   ImGui::SameLine();

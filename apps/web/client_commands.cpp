@@ -167,36 +167,55 @@ Result<ClientCommand> parse_command(std::string_view text) {
 
 namespace {
 
-// A test sees that no text of the table has a quotation mark, a backslash or a "<".
-std::string quoted(std::string_view text) {
+// A test sees that no text of the tables has a quotation mark, a backslash or a "<".
+std::string js_text(std::string_view text) {
   return '"' + std::string(text) + '"';
-}
-
-std::string limits(const flow::Range& range) {
-  return ", min: " + decimal_text(range.min) + ", max: " + decimal_text(range.max);
 }
 
 std::string modes_of(const flow::SettingText& setting) {
   std::string list = ", modes: [";
   for (std::uint8_t number = 0; number < flow::mode_count; ++number)
     if (const auto mode = static_cast<flow::Mode>(number); setting.works_in(mode))
-      list += quoted(name_of(mode)) + ',';
+      list += js_text(name_of(mode)) + ',';
   return list + "]";
 }
 
-std::string mode_list() {
-  std::string list = "{ ";
-  for (std::uint8_t number = 0; number < flow::mode_count; ++number)
-    list += std::string(name_of(static_cast<flow::Mode>(number))) + ": " +
-            quoted(flow::mode_labels[number]) + ", ";
-  return list + "}";
+/// Which values it has, by its kind.
+template <class T>
+std::string values_of(const flow::ChoiceSetting<T>& choice) {
+  return ", choices: " + js_text(choice.choices);
+}
+std::string values_of(const flow::SwitchSetting&) {
+  return ", choices: \"false or true\"";
+}
+std::string values_of(const flow::BrushesSetting&) {
+  return ", choices: " + js_text(deform::brush_words());
+}
+std::string limits(const flow::Range& range, std::string_view unit) {
+  return ", min: " + decimal_text(range.min) + ", max: " + decimal_text(range.max) +
+         ", unit: " + js_text(unit);
+}
+std::string values_of(const flow::FingersSetting& lengths) {
+  return limits(lengths.handy, lengths.unit);
+}
+std::string values_of(const flow::NumberSetting& number) {
+  std::string needs;
+  if (number.has_effect == flow::setting::is_filtered) needs = ", needs: \"filter\"";
+  if (number.has_effect == flow::setting::has_brush) needs = ", needs: \"brushes\"";
+  return limits(number.range, number.unit) + needs;
 }
 
-std::string brush_list() {
-  std::string list = "[";
-  for (std::uint8_t number = 0; number < deform::brush_count; ++number)
-    list += quoted(name_of(static_cast<deform::Brush>(number))) + ',';
-  return list + "]";
+std::string_view group_name(commands::Buttons group) noexcept {
+  switch (group) {
+  case commands::Buttons::hands:
+    return "hands";
+  case commands::Buttons::model:
+    return "model";
+  case commands::Buttons::more:
+    return "more";
+  default:
+    return "";
+  }
 }
 
 } // namespace
@@ -205,11 +224,12 @@ std::string page_commands() {
   std::string list = "[";
   for (const commands::Row& row : commands::table()) {
     if ((row.places & commands::on_page) == 0) continue;
-    list += "\n  { name: " + quoted(row.name) + ", keys: [";
+    list += "\n  { name: " + js_text(row.name) + ", keys: [";
     for (const std::string_view key : row.keys)
-      if (!key.empty()) list += quoted(key) + ',';
-    list += "], help: " + quoted(row.help) + ", button: " + quoted(row.button) +
-            ", buttonOn: " + quoted(row.button_on.empty() ? row.button : row.button_on) +
+      if (!key.empty()) list += js_text(key) + ',';
+    list += "], help: " + js_text(row.help) + ", button: " + js_text(row.button) +
+            ", buttonOn: " + js_text(row.button_on.empty() ? row.button : row.button_on) +
+            ", group: " + js_text(group_name(row.group)) +
             ", isForRun: " + (row.is_for_run() ? "true" : "false") +
             ", isSetting: " + (row.choose != nullptr ? "true" : "false") + " },";
   }
@@ -218,31 +238,46 @@ std::string page_commands() {
 
 std::string page_settings() {
   std::string list = "{";
-  flow::for_each_setting([&](const auto& setting) {
-    list += "\n  " + std::string(setting.name) + ": { label: " + quoted(setting.label) +
-            modes_of(setting);
-    if constexpr (requires { setting.handy; })
-      list += limits(setting.handy);
-    else if constexpr (requires { setting.range; })
-      list += limits(setting.range);
-    if constexpr (std::is_same_v<decltype(setting), const flow::BrushesSetting&>)
-      list += ", choices: " + brush_list();
-    if constexpr (std::is_same_v<decltype(setting), const flow::ChoiceSetting<flow::Mode>&>)
-      list += ", choices: " + mode_list();
-    list += " },";
-  });
+  for (const bool of_fingers : {true, false}) // what fingers do is changed most often
+    flow::for_each_setting([&](const auto& setting) {
+      using Described = std::decay_t<decltype(setting)>;
+      constexpr bool is_of_fingers = std::is_same_v<Described, flow::FingersSetting> ||
+                                     std::is_same_v<Described, flow::BrushesSetting>;
+      constexpr bool is_mode = std::is_same_v<Described, flow::ChoiceSetting<flow::Mode>>;
+      if (setting.option.empty() || is_of_fingers != of_fingers) return;
+      const commands::Row* const row = commands::row_changing(setting.name);
+      list += "\n  " + std::string(setting.name) + ": { label: " + js_text(setting.label) +
+              ", help: " + js_text(is_mode ? flow::modes_help : setting.help) +
+              ", command: " + js_text(row != nullptr ? row->name : "") + modes_of(setting) +
+              values_of(setting) + ", isOfFingers: " + (is_of_fingers ? "true" : "false");
+      if (is_mode) {
+        list += ", labels: [";
+        for (const std::string_view label : flow::mode_labels)
+          list += js_text(label) + ',';
+        list += "]";
+      }
+      list += " },";
+    });
   return list + "\n}";
+}
+
+std::string page_hints() {
+  std::string list = "[";
+  for (const auto& [keys, text] : commands::hints)
+    list += "\n  { keys: " + js_text(keys) + ", text: " + js_text(text) + " },";
+  return list + "\n]";
 }
 
 std::string command_states(const commands::Situation& now) {
   std::string lines;
   for (const commands::Row& row : commands::table()) {
     if (!row.is_for_run() || (row.places & commands::on_page) == 0) continue;
-    const bool on = row.is_on_in(now);
+    const bool is_hidden = row.is_shown != nullptr && !row.is_shown(now);
+    const std::string_view state = row.is_on_in(now) ? "on" : is_hidden ? "hidden" : "off";
     const char* const refusal = row.refusal_in(now);
-    if (!on && refusal == nullptr) continue;
-    lines += std::string(row.name) + (on ? "\ton\t" : "\toff\t") +
-             (refusal != nullptr ? refusal : "") + '\n';
+    if (state == "off" && refusal == nullptr) continue;
+    lines.append(row.name).append("\t").append(state).append("\t");
+    lines.append(refusal != nullptr ? refusal : "") += '\n';
   }
   return lines;
 }

@@ -40,16 +40,22 @@ using ClientCommand = std::variant<flow::Command, const commands::Row*, NamedSet
 Result<ClientCommand> parse_command(std::string_view text);
 
 /// Returns the page's rows as a JavaScript array of objects with name, keys, help, button,
-/// buttonOn, isForRun and isSetting.
+/// buttonOn, group, isForRun and isSetting.
 std::string page_commands();
 
-/// Returns a JavaScript object with the settings by name. Each has label, and the modes in which it
-/// works; those with a slider have min and max, the brushes have choices, and the mode has the
-/// labels of its choices by their names.
+/// Returns a JavaScript object with the settings by name, those that windows show, in their order.
+/// Each has label, help, the modes in which it works, the name of the command that changes it, or
+/// "", and whether each finger has its own value; numbers have min, max and unit, all others have
+/// choices as a list in prose. `needs` names a setting without whose other choices than the first
+/// it has no effect.
 std::string page_settings();
 
-/// Returns the text of the commands message: a line for each command that is on or not possible, in
-/// table order, with name, "on" or "off", and refusal, separated by tabs.
+/// Returns the hints for the first start as a JavaScript array of objects with keys and text.
+std::string page_hints();
+
+/// Returns the text of the commands message: a line for each command that is on, not possible, or
+/// without a button, in table order, with name, "on", "off" or "hidden", and refusal, separated by
+/// tabs.
 std::string command_states(const commands::Situation& now);
 
 } // namespace nendo::web

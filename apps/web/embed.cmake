@@ -1,5 +1,5 @@
 # Makes one page of the files in FOLDER, and a source of it: cmake -DFOLDER=... -DOUT=... -P embed.cmake
-# A line of index.html that is only <!-- embed FILE --> becomes that file.
+# Each <!-- embed FILE --> of index.html becomes that file.
 file(READ ${FOLDER}/index.html page)
 string(REGEX MATCHALL "<!-- embed [^ ]+ -->" marks "${page}")
 foreach(mark ${marks})

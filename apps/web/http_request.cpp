@@ -1,7 +1,9 @@
 #include "web/http_request.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <utility>
 
 #include <nendo/base/endings.hpp>
 #include <nendo/base/endpoint.hpp>
@@ -196,15 +198,22 @@ Admission admit(const HttpRequest& request, std::string_view token) noexcept {
   if (!is_foxglove && request.count("Origin") > 0 && !(origin && is_same_origin(*origin, *host)))
     return refuse(403, "this is no other page's to use");
   if (request.path == "/") return {200, Resource::page, {}};
-  if (request.path != "/model" && request.path != "/picture" && request.path != "/ws" &&
-      !is_foxglove)
-    return refuse(404, "nothing of that name");
+  constexpr std::array<std::pair<std::string_view, Resource>, 5> resources{
+      {{"/model", Resource::model},
+       {"/picture", Resource::picture},
+       {"/skin", Resource::skin},
+       {"/ws", Resource::socket},
+       {"/foxglove", Resource::foxglove}}};
+  const auto* const found =
+      std::find_if(resources.begin(), resources.end(),
+                   [&](const auto& resource) { return resource.first == request.path; });
+  if (found == resources.end()) return refuse(404, "nothing of that name");
   const auto given = request.parameter("token");
   if (!given || !equal_in_constant_time(*given, token))
     return refuse(403, "the token is another one: use the whole address that nendo printed");
-  if (request.path == "/ws") return admit_socket(request);
+  if (found->second == Resource::socket) return admit_socket(request);
   if (is_foxglove) return admit_foxglove(request);
-  return {200, request.path == "/model" ? Resource::model : Resource::picture, {}};
+  return {200, found->second, {}};
 }
 
 } // namespace nendo::web

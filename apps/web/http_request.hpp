@@ -41,7 +41,7 @@ struct HttpHead {
 /// Parses the head of a request. `bytes` must be all bytes that the client has sent so far.
 HttpHead parse_head(std::string_view bytes);
 
-enum class Resource { page, model, picture, socket, foxglove };
+enum class Resource { page, model, picture, skin, socket, foxglove };
 
 struct Admission {
   int status = 200; ///< 200 if granted, otherwise the status of the refusal

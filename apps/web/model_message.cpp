@@ -117,11 +117,7 @@ void write_bones(const hand::HandSkeleton& skeleton, WireWriter& out) {
     const auto parent = hand::parent_of(static_cast<hand::Joint>(joint));
     Eigen::Isometry3d T_parent_joint = rest.joints[joint];
     if (parent) T_parent_joint = rest[*parent].inverse() * T_parent_joint;
-    const Eigen::Vector3f place = T_parent_joint.translation().cast<float>();
-    const Eigen::Quaternionf turn(T_parent_joint.linear().cast<float>());
-    for (const float number :
-         {place.x(), place.y(), place.z(), turn.x(), turn.y(), turn.z(), turn.w()})
-      out.put(number);
+    write_pose(T_parent_joint, out);
   }
 }
 

@@ -1,13 +1,16 @@
 // Reads HTTP requests and the messages of WebSockets, and answers them.
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <poll.h>
 
 #include "web/client_commands.hpp"
 #include "web/server_work.hpp"
+#include "web/skin_message.hpp"
 
 namespace nendo::web {
 
@@ -60,6 +63,8 @@ std::string refusal(int status, std::string_view why) {
   return answer_head(status, "text/plain; charset=utf-8", body.size()) + more + "\r\n" + body;
 }
 
+constexpr std::string_view binary_type = "application/octet-stream";
+
 /// Only scripts and styles with this nonce run in the page, and it can connect only to the host
 /// that it came from.
 std::string page_head(std::size_t bytes, std::string_view nonce, std::string_view host) {
@@ -72,8 +77,14 @@ std::string page_head(std::size_t bytes, std::string_view nonce, std::string_vie
 }
 
 std::string page_with(std::string_view nonce) {
-  const std::string settled = replaced(page(), "NENDO-SETTINGS", page_settings());
-  return replaced(replaced(settled, "NENDO-COMMANDS", page_commands()), "NENDO-NONCE", nonce);
+  std::string text(page());
+  for (const auto& [mark, by] :
+       {std::pair<std::string_view, std::string>{"NENDO-SETTINGS", page_settings()},
+        {"NENDO-COMMANDS", page_commands()},
+        {"NENDO-HINTS", page_hints()},
+        {"NENDO-NONCE", std::string(nonce)}})
+    text = replaced(text, mark, by);
+  return text;
 }
 
 } // namespace
@@ -107,12 +118,14 @@ void Server::Work::read_head(Connection& connection, HostTime now) {
     const std::string nonce = random_hex(16);
     const SharedBytes page = shared_bytes(page_with(nonce));
     connection.answer(page_head(page->size(), nonce, *head.request.header("Host")), page, now);
+  } else if (admission.resource == Resource::skin) {
+    static const SharedBytes skin = std::make_shared<const std::vector<std::byte>>(skin_message());
+    connection.answer(answer_head(200, binary_type, skin->size()) + "\r\n", skin, now);
   } else if (!presented_.model) {
     refuse(connection, 503, "the loop has not begun; try again in a second", now);
   } else if (admission.resource == Resource::model) {
     const std::size_t bytes = presented_.model->size();
-    connection.answer(answer_head(200, "application/octet-stream", bytes) + "\r\n",
-                      presented_.model, now);
+    connection.answer(answer_head(200, binary_type, bytes) + "\r\n", presented_.model, now);
   } else if (admission.resource == Resource::picture) {
     send_picture(connection, head.request, now);
   } else {

@@ -209,6 +209,13 @@ std::vector<std::byte> clay_message(const flow::Frame& frame) {
   return message;
 }
 
+void write_pose(const Eigen::Isometry3d& pose, WireWriter& out) noexcept {
+  out.put(Eigen::Vector3f(pose.translation().cast<float>()));
+  const Eigen::Quaternionf turn(pose.linear().cast<float>());
+  for (const float part : turn.coeffs()) // x, y, z, w
+    out.put(part);
+}
+
 void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept {
   const Eigen::Vector3d wrist = hand.pose[hand::Joint::wrist].translation();
   for (Eigen::Index axis = 0; axis < 3; ++axis)

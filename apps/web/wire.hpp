@@ -108,6 +108,14 @@ struct WeightsHead {
 };
 static_assert(sizeof(WeightsHead) == 16);
 
+/// The head of the skin message.
+struct SkinHead {
+  std::uint32_t vertices = 0;
+  std::uint32_t triangles = 0;
+};
+static_assert(sizeof(SkinHead) == 8);
+inline constexpr std::size_t skin_vertex_bytes = 20; ///< a position, four joints, four weights
+
 /// The head of the clay message, in PROTOCOL.md's order and without gaps. The contacts follow.
 struct ClayMessage {
   std::uint8_t type = static_cast<std::uint8_t>(MessageType::clay);
@@ -139,7 +147,8 @@ inline constexpr std::size_t sent_rotations = 1 + 18;
 inline constexpr std::size_t hand_bytes = 12 + sent_rotations * 6;
 /// The bytes of a hand's bones, twice: for the initial glove, and for a glove of the other side.
 /// Each joint has its position and rotation relative to its parent.
-inline constexpr std::size_t bones_bytes = 2 * hand::joint_count * 7 * 4;
+inline constexpr std::size_t pose_bytes = 28;
+inline constexpr std::size_t bones_bytes = 2 * hand::joint_count * pose_bytes;
 inline constexpr std::size_t step_head_bytes = 4;
 /// Returns the bytes of a step with this number of vectors.
 constexpr std::size_t vectors_bytes(std::size_t vectors) noexcept {
@@ -185,6 +194,8 @@ std::vector<std::byte> message_of(const flow::StepList& steps);
 std::vector<std::byte> message_of(std::uint32_t number, const puppet::Rig* rig);
 /// Returns the message with the clay's contacts and volume. Allocates.
 std::vector<std::byte> clay_message(const flow::Frame& frame);
+/// Writes a position and a rotation as a unit quaternion x, y, z, w: pose_bytes.
+void write_pose(const Eigen::Isometry3d& pose, WireWriter& out) noexcept;
 void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept;
 /// Writes the frame's step: the vectors of its surface move, if any, or else its fields. `origin`
 /// and `unit` are those of the loop's BlockLayout. Omits functions with a zero coefficient, and

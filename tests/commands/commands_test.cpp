@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -279,58 +280,63 @@ TEST_SUITE("commands") {
       const bool is_there = (row.places & commands::on_page) != 0;
       const std::string name(row.name);
       CHECK((list.find("{ name: \"" + name + "\", ") != std::string::npos) == is_there);
-      if (!row.is_for_run())
+      if (!row.is_for_run() && !row.name.starts_with("show ")) // which are all boxes
         CHECK((panel.find("\n  '" + name + "': panel => ") != std::string::npos) == is_there);
     }
     for (const std::string& name :
-         attributes_in(content_of("apps/web/page/index.html"), "data-help")) {
+         attributes_in(content_of("apps/web/page/index.html"), "data-own")) {
       CAPTURE(name);
-      CHECK(commands::named(name) != nullptr);
+      REQUIRE(commands::named(name) != nullptr);
+      CHECK_FALSE(commands::named(name)->is_for_run());
     }
   }
 
-  TEST_CASE(
-      "the page's sliders and labels are of settings that are described, and in effect there") {
+  TEST_CASE("the page has the window's settings, fingers' first, with their choices and ranges") {
     const std::string list = web::page_settings();
     flow::for_each_setting([&](const auto& setting) {
       CAPTURE(setting.name);
       const std::string name(setting.name), label(setting.label);
-      CHECK(list.find("\n  " + name + ": { label: \"" + label + "\"") != std::string::npos);
-      CHECK(label.find_first_of("\"\\<") == std::string::npos);
+      const bool is_there =
+          list.find("\n  " + name + ": { label: \"" + label + "\"") != std::string::npos;
+      CHECK(is_there == !setting.option.empty());
+      for (const std::string_view text : {setting.label, setting.help})
+        CHECK(text.find_first_of("\"\\<") == std::string_view::npos);
+      const Row* const row = commands::row_changing(setting.name);
+      CHECK((row == nullptr || row->choose != nullptr));
     });
-    CHECK(list.find("keep_volume: { label: \"volume\", modes: [\"type1\",\"type2\",], min: 0.0, "
-                    "max: 1.0 }") != std::string::npos);
-    CHECK(list.find("brushes: { label: \"brush\", modes: [\"type2\",], choices: "
-                    "[\"pull\",\"none\",") != std::string::npos);
-    CHECK(list.find("choices: { type1: \"Pull\", type2: \"Strokes\", clay: \"Clay\", ") !=
+    CHECK(list.find("radius_m: ") < list.find("brushes: "));
+    CHECK(list.find("brushes: ") < list.find("mode: "));
+    const auto has = [&](const char* text) { return list.find(text) != std::string::npos; };
+    CHECK(has("command: \"more clay\", modes: [\"type1\",\"type2\",], min: 0.0, max: 1.0, unit: "
+              "\"\", isOfFingers: false }"));
+    CHECK(has("modes: [\"type2\",], choices: \"pull, none, push, inflate, smooth, "));
+    CHECK(has("unit: \"\", needs: \"brushes\""));
+    CHECK(has("unit: \"Hz\", needs: \"filter\""));
+    CHECK(has("labels: [\"Pull\",\"Strokes\",\"Clay\",\"Parts\",]"));
+    CHECK(web::page_hints().find("{ keys: \"drag\", text: \"Turns the view; ") !=
           std::string::npos);
-    const std::string html = content_of("apps/web/page/index.html");
-    for (const std::string& name : attributes_in(html, "data-label"))
-      CHECK(list.find("\n  " + name + ": {") != std::string::npos);
   }
 
-  TEST_CASE(
-      "each value that an input of the page has is one of its setting, and no id occurs twice") {
-    const std::string html = content_of("apps/web/page/index.html");
-    const auto ids = attributes_in(html, "id");
+  TEST_CASE("each choice that the page offers is one of its setting, and no id occurs twice") {
+    const auto ids = attributes_in(content_of("apps/web/page/index.html"), "id");
     CHECK(std::set<std::string>(ids.begin(), ids.end()).size() == ids.size());
-    const auto begin = html.find("<form id=\"shaping\">");
-    const std::string form = html.substr(begin, html.find("</form>", begin) - begin);
+    const std::string list = web::page_settings();
+    const std::string begin = ", choices: \"";
     int values = 0;
-    for (auto at = form.find(" name=\""); at != std::string::npos; at = form.find(" name=\"", at)) {
-      const auto next = form.find(" name=\"", at + 1);
-      const std::string input = form.substr(at, next - at); // with the options of a list
-      const std::string name = attributes_in(input, "name").front();
+    for (auto at = list.find(begin); at != std::string::npos; at = list.find(begin, at)) {
+      const auto line = list.rfind("\n  ", at) + 3;
+      const std::string name = list.substr(line, list.find(':', line) - line);
       CAPTURE(name);
-      CHECK(web::page_settings().find("\n  " + name + ": {") != std::string::npos);
-      for (const auto* attribute : {"value", "data-off"})
-        for (const std::string& value : attributes_in(input, attribute)) {
-          CHECK(web::parse_named_settings(name + '=' + value));
-          ++values;
-        }
-      at = next;
+      at += begin.size();
+      std::string choices = list.substr(at, list.find('"', at) - at); // as choicesOf() of the page
+      choices.replace(choices.find(" or "), 4, ", ");
+      std::istringstream words(choices);
+      for (std::string choice; std::getline(words >> std::ws, choice, ',');) {
+        CHECK(web::parse_named_settings(name + '=' + choice));
+        ++values;
+      }
     }
-    CHECK(values == 16); // four modes, four kernels, and four boxes on and off
+    CHECK(values == 25); // four modes, four kernels, nine brushes, and four of two choices
   }
 
   TEST_CASE(
@@ -343,12 +349,16 @@ TEST_SUITE("commands") {
         const char* const refusal = row.refusal_in(state.now());
         if (row.is_on_in(state.now()))
           lines += std::string(row.name) + "\ton\t" + (refusal != nullptr ? refusal : "") + "\n";
+        else if (row.is_shown != nullptr && !row.is_shown(state.now()))
+          lines +=
+              std::string(row.name) + "\thidden\t" + (refusal != nullptr ? refusal : "") + "\n";
         else if (refusal != nullptr)
           lines += std::string(row.name) + "\toff\t" + refusal + "\n";
       }
       CHECK(web::command_states(state.now()) == lines);
     }
     const std::string none = web::command_states(State(false).now());
+    CHECK(none.find("punch\thidden\t") != std::string::npos);
     CHECK(none.find("undo\toff\tThere is nothing to undo.\n") != std::string::npos);
     CHECK(web::command_states(State(true).now()).find("take\ton\t\n") != std::string::npos);
   }
@@ -357,7 +367,7 @@ TEST_SUITE("commands") {
     const std::string protocol = content_of("apps/web/PROTOCOL.md");
     const std::string version = std::to_string(web::ModelHead{}.version);
     CHECK(protocol.find("| 8 | u32 | version, " + version + " |") != std::string::npos);
-    CHECK(content_of("apps/web/page/wire.js").find("getUint32(8, true) !== " + version + ')') !=
+    CHECK(content_of("apps/web/page/wire.js").find("from.u32() !== " + version + ')') !=
           std::string::npos);
     flow::for_each_setting([&](const auto& setting) {
       CAPTURE(setting.name);

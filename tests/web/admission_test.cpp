@@ -47,6 +47,7 @@ TEST_SUITE("admission") {
     CHECK(answer({}).resource == Resource::socket);
     CHECK(answer({.path = "/model"}).resource == Resource::model);
     CHECK(answer({.path = "/picture"}).resource == Resource::picture);
+    CHECK(answer({.path = "/skin"}).resource == Resource::skin);
     CHECK(answer({.host = "localhost:9", .origin = "http://localhost:9"}).status == 200);
     CHECK(answer({.host = "[::1]:9", .origin = "http://[::1]:9"}).status == 200);
     CHECK(answer({.origin = ""}).status == 200); // no browser says none for a WebSocket
@@ -59,7 +60,7 @@ TEST_SUITE("admission") {
   }
 
   TEST_CASE("another page's origin is refused for whatever it asks") {
-    for (const auto* path : {"/", "/model", "/picture", "/ws"})
+    for (const auto* path : {"/", "/model", "/picture", "/skin", "/ws"})
       for (const auto* origin :
            {"http://evil.example", "null", "https://127.0.0.1:8080", "http://127.0.0.1:8081",
             "http://127.0.0.1", "http://127.0.0.1:8080.evil.example", "http://localhost:8080"}) {
@@ -69,14 +70,14 @@ TEST_SUITE("admission") {
   }
 
   TEST_CASE("a name for this host is refused, even where the origin agrees: DNS rebinding") {
-    for (const auto* path : {"/", "/model", "/picture", "/ws"})
+    for (const auto* path : {"/", "/model", "/picture", "/skin", "/ws"})
       CHECK(
           answer({.path = path, .host = "evil.example:8080", .origin = "http://evil.example:8080"})
               .status == 403);
   }
 
   TEST_CASE("without the token, a client gets neither model nor socket") {
-    for (const auto* path : {"/model", "/picture", "/ws"})
+    for (const auto* path : {"/model", "/picture", "/skin", "/ws"})
       for (const auto& given : {std::string(), std::string("x"), std::string(token) + "0",
                                 std::string(token).substr(1), std::string(32, '0')})
         CHECK(answer({.path = path, .token_given = given}).status == 403);

@@ -1,25 +1,24 @@
 // A camera that goes round a place. Angles in radians, lengths in metres.
-const FIELD_OF_VIEW = 30 * Math.PI / 180
+const FIELD_OF_VIEW = 24 * Math.PI / 180
 
 class Camera {
   constructor(canvas, changed) {
     this.canvas = canvas
     this.changed = changed
+    this.covered = 0 // at the left, by the panel, as a share of the width
     this.home = { azimuth: 0.38, elevation: 0.17, distance: 2.6, target: [0, 0.4, 0] }
     this.reset()
-    const pointers = new Map()
+    const pointers = this.pointers = new Map()
     canvas.addEventListener('pointerdown', event => {
       canvas.setPointerCapture(event.pointerId)
       pointers.set(event.pointerId, event)
     })
-    const forget = event => pointers.delete(event.pointerId)
-    canvas.addEventListener('pointerup', forget)
-    canvas.addEventListener('pointercancel', forget)
+    for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, event => this.forget(event))
     canvas.addEventListener('pointermove', event => {
       const last = pointers.get(event.pointerId)
       if (!last) return
       const dx = event.clientX - last.clientX, dy = event.clientY - last.clientY
-      if (pointers.size > 1) this.pinch(pointers, event)
+      if (pointers.size > 1) this.pinch(event, dx / 2, dy / 2)
       else if (event.shiftKey || event.buttons & 6) this.pan(dx, dy)
       else this.orbit(dx, dy)
       pointers.set(event.pointerId, event)
@@ -35,6 +34,12 @@ class Camera {
   reset() {
     Object.assign(this, { ...this.home, target: [...this.home.target] })
     this.changed()
+  }
+  // The first view: all of a box.
+  see({ low, high }) {
+    const distance = size(minus(high, low)) / 2 / Math.sin(FIELD_OF_VIEW / 2)
+    Object.assign(this.home, { target: times(add(low, high), 0.5), distance: Math.max(0.3, distance) })
+    this.reset()
   }
   look(azimuth, elevation) {
     Object.assign(this, { azimuth, elevation })
@@ -60,11 +65,14 @@ class Camera {
     this.distance = Math.min(20, Math.max(0.15, this.distance * 1.12 ** steps))
     this.changed()
   }
-  pinch(pointers, event) {
-    const other = [...pointers.values()].find(pointer => pointer.pointerId !== event.pointerId)
-    const apart = point => Math.hypot(point.clientX - other.clientX, point.clientY - other.clientY)
-    this.zoom(Math.log(apart(pointers.get(event.pointerId)) / Math.max(1, apart(event))) / Math.log(1.12))
+  // One of two fingers has moved.
+  pinch(event, dx, dy) {
+    const before = this.pointers.get(event.pointerId), other = [...this.pointers.values()].find(pointer => pointer !== before)
+    const apart = point => Math.max(1, Math.hypot(point.clientX - other.clientX, point.clientY - other.clientY))
+    this.zoom(Math.log(apart(before) / apart(event)) / Math.log(1.12))
+    this.pan(dx, dy)
   }
+  forget(event) { this.pointers.delete(event.pointerId) }
 
   // Of the picture: right, up, and towards the eye.
   axes() {
@@ -74,21 +82,21 @@ class Camera {
   }
   // The height of the world that the picture shows at this distance from the eye.
   pictureHeight(depth) {
-    const narrow = Math.min(1, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight))
+    const narrow = Math.min(1, (1 - this.covered) * this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight))
     return 2 * Math.tan(FIELD_OF_VIEW / 2) * depth / narrow
   }
   eye() { return add(this.target, times(this.axes()[2], this.distance)) }
-  // Column by column, as WebGL takes it. shift: of the middle, as a share of half the width.
-  projection(aspect, shift) {
+  // Column by column, as WebGL takes it. The middle is that of the part that is not covered.
+  projection(aspect) {
     const near = Math.max(0.02, this.distance - 4), far = this.distance + 8
     const [r, u, b] = this.axes(), eye = this.eye()
-    const f = 1 / Math.tan(FIELD_OF_VIEW / 2), narrow = Math.min(1, aspect)
+    const f = 1 / Math.tan(FIELD_OF_VIEW / 2), narrow = Math.min(1, aspect * (1 - this.covered))
     const rows = [[...times(r, f * narrow / aspect), -f * narrow / aspect * dot(r, eye)], [...times(u, f * narrow), -f * narrow * dot(u, eye)],
       [...b, -dot(b, eye)]]
     const z = rows[2].map(number => (far + near) / (near - far) * number)
     z[3] += 2 * far * near / (near - far)
     const w = rows[2].map(number => -number)
-    rows[0] = rows[0].map((number, at) => number + shift * w[at])
+    rows[0] = rows[0].map((number, at) => number + this.covered * w[at])
     const clip = []
     for (let column = 0; column < 4; ++column) clip.push(rows[0][column], rows[1][column], z[column], w[column])
     return clip

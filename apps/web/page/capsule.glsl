@@ -1,4 +1,4 @@
-// Bones, flesh, arrows: capsules between two places, each with a radius at both ends.
+// Bones, arrows: capsules between two places, each with a radius at both ends.
 layout(location = 0) in vec4 unit;  // of a ball of radius 1 about the axis z, and which end it belongs to
 layout(location = 1) in vec4 from;  // and the radius there
 layout(location = 2) in vec4 to;

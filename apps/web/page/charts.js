@@ -1,34 +1,42 @@
-// Strip charts: the last so many values, and a line of words.
+// Strip charts: the last values in milliseconds, and a line of words.
+const FONT = '11px Inter, "DejaVu Sans", system-ui, sans-serif'
+const colour = name => getComputedStyle(document.body).getPropertyValue(name)
+// Of a canvas that is as fine as the screen.
+function penOf(canvas) {
+  const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight
+  Object.assign(canvas, { width: width * ratio, height: height * ratio })
+  const pen = canvas.getContext('2d')
+  pen.scale(ratio, ratio)
+  return { pen, width, height }
+}
 const brief = number => number < 100 ? number.toPrecision(3) : String(Math.round(number))
 
 class Chart {
-  constructor(canvas, name, unit, length = 240) {
-    Object.assign(this, { canvas, name, unit, values: new Float32Array(length), at: 0 })
+  constructor(name, length = 240) {
+    const canvas = make('canvas', element('timing').parentNode, { className: 'chart' })
+    Object.assign(this, { canvas, name, values: new Float32Array(length), at: 0 })
   }
   add(value) {
     this.values[this.at] = Number.isFinite(value) ? value : 0
     this.at = (this.at + 1) % this.values.length
   }
   draw() {
-    const ratio = window.devicePixelRatio || 1
-    const { canvas, values } = this, width = canvas.clientWidth, height = canvas.clientHeight
-    if (width === 0) return
-    Object.assign(canvas, { width: width * ratio, height: height * ratio })
-    const pen = canvas.getContext('2d')
-    pen.scale(ratio, ratio)
+    const { values } = this
+    if (this.canvas.clientWidth === 0) return
+    const { pen, width, height } = penOf(this.canvas)
     const most = Math.max(...values), last = values[(this.at + values.length - 1) % values.length]
     pen.beginPath()
     values.forEach((_, n) => {
       const value = values[(this.at + n) % values.length]
       pen.lineTo(n / (values.length - 1) * width, height - 1 - (height - 17) * value / Math.max(most, 1e-9))
     })
-    pen.strokeStyle = '#b4532a'
+    pen.strokeStyle = colour('--accent')
     pen.lineWidth = 1.2
     pen.stroke()
-    pen.fillStyle = '#5c656d'
-    pen.font = '11px system-ui, "DejaVu Sans", sans-serif'
+    pen.fillStyle = colour('--soft')
+    pen.font = FONT
     pen.fillText(this.name, 4, 12)
-    const words = `${brief(last)}, most ${brief(most)} ${this.unit}`
+    const words = `${brief(last)}, most ${brief(most)} ms`
     pen.fillText(words, width - 4 - pen.measureText(words).width, 12)
   }
 }
@@ -43,16 +51,14 @@ function bendsOf(hand) {
   }))
 }
 function drawBends(canvas, hand) {
-  const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight
-  Object.assign(canvas, { width: width * ratio, height: height * ratio })
-  const pen = canvas.getContext('2d')
-  pen.scale(ratio, ratio)
-  const step = width / 17
+  if (canvas.clientWidth === 0) return
+  const { pen, width, height } = penOf(canvas), step = width / 17
   bendsOf(hand).forEach((bend, joint) => {
     const x = (joint + Math.floor(joint / 3) * 0.5) * step, long = Math.min(1, bend / 110) * (height - 2)
-    pen.fillStyle = 'rgba(0, 0, 0, 0.06)'
-    pen.fillRect(x, 0, step * 0.8, height)
-    pen.fillStyle = '#34567a'
+    pen.fillStyle = colour('--chart')
     pen.fillRect(x, height - long, step * 0.8, long)
   })
+  pen.fillStyle = colour('--soft')
+  pen.font = FONT
+  pen.fillText('thumb to little, degrees', 4, 12)
 }

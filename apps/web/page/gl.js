@@ -21,11 +21,12 @@ function makeProgram(gl, vertex, fragment, feedback = []) {
   const uniforms = new Map()
   for (let at = 0; at < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); ++at) {
     const { name, type } = gl.getActiveUniform(program, at)
-    uniforms.set(name, { type, place: gl.getUniformLocation(program, name) })
+    uniforms.set(name.replace('[0]', ''), { type, place: gl.getUniformLocation(program, name) })
   }
   const put = (type, place, value) => {
     if (type === gl.FLOAT) gl.uniform1f(place, value)
     else if (type === gl.FLOAT_VEC3) gl.uniform3fv(place, value)
+    else if (type === gl.FLOAT_VEC4) gl.uniform4fv(place, value)
     else if (type === gl.FLOAT_MAT4) gl.uniformMatrix4fv(place, false, value)
     else gl.uniform1i(place, value)
   }
@@ -46,4 +47,20 @@ function makeBuffer(gl, target, data, usage) {
   gl.bindBuffer(target, buffer)
   gl.bufferData(target, data, usage)
   return buffer
+}
+
+// Vertices with these attributes, in the order of their places: a buffer, how many numbers, and what is not usual.
+function makeArray(gl, attributes, corners = null) {
+  const array = gl.createVertexArray()
+  gl.bindVertexArray(array)
+  attributes.forEach(([buffer, size, { type = gl.FLOAT, isInteger = false, stride = 0, offset = 0, divisor = 0 } = {}], place) => {
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer)
+    gl.enableVertexAttribArray(place)
+    if (isInteger) gl.vertexAttribIPointer(place, size, type, stride, offset)
+    else gl.vertexAttribPointer(place, size, type, true, stride, offset)
+    gl.vertexAttribDivisor(place, divisor)
+  })
+  if (corners) makeBuffer(gl, gl.ELEMENT_ARRAY_BUFFER, corners, gl.STATIC_DRAW)
+  gl.bindVertexArray(null)
+  return array
 }

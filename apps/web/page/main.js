@@ -5,16 +5,15 @@ let socket = null, latest = null, patience = 500, dirty = true, scene = null, tr
 const SERVICE_RESTART = 1012
 const counts = { updates: 0, updateBytes: 0, shapes: 0, weights: 0, bakes: 0, draws: 0 }
 
-const panel = new Panel(ask, (part, yes) => {
-  if (scene) scene.parts[part] = yes
-  dirty = true
-})
+const shown = { hands: true, bones: false, vectors: true, radii: false, contact: false, facets: false }
+const panel = new Panel(ask, shown)
 try {
-  scene = new Scene(element('scene'))
+  scene = new Scene(element('scene'), shown)
 } catch (error) {
   trouble = `No picture: ${error.message}. Figures and buttons work all the same.`
   panel.say(trouble)
 }
+new Tips()
 const camera = new Camera(element('scene'), () => { dirty = true })
 panel.camera = camera
 const mover = new HandMover(element('scene'), camera, () => scene && scene.shape && latest &&
@@ -47,13 +46,16 @@ async function connect() {
   panel.setModel(model)
   holds.begin()
   if (scene) {
-    const first = !scene.shape
     scene.setModel(model, fetchPicture, () => { dirty = true })
-    camera.home.target = [0, 0.5 * scene.height, 0]
-    camera.home.distance = Math.max(0.5, 3.0 * Math.max(0.45, scene.height))
-    if (first) camera.reset()
+    if (!scene.skins) fetchSkin()
   }
   open(model)
+}
+
+async function fetchSkin() {
+  const answer = await fetch('/skin?token=' + token)
+  if (answer.ok) scene.setSkin(readSkin(await answer.arrayBuffer()))
+  dirty = true
 }
 
 async function fetchPicture(number) {
@@ -118,6 +120,7 @@ function takeShape(shape, model) {
 function takeUpdate(update) {
   counts.updates += 1
   counts.updateBytes += update.bytes
+  if (!latest && scene) camera.see(scene.boxWith(update.hands))
   latest = update
   holds.follow(update)
   panel.add(update)
@@ -137,7 +140,9 @@ function picture() {
   panel.shaping.follow()
   if (!dirty) return
   dirty = false
+  const begin = performance.now()
   if (scene) scene.draw(camera, latest, holds, panel.covered())
+  panel.charts.picture.add(performance.now() - begin)
   panel.draw()
 }
 

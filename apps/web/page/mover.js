@@ -1,5 +1,6 @@
 // The mouse places a hand, for gloves that have no tracker: the window's HandMover.
-// From a right press near a hand to its release, which the camera then hears nothing of.
+// From a right press near a hand to its release, or from a finger that was held on one; the camera then
+// hears nothing of it.
 const HAND_REACH = 60 // pixels from a joint
 const MAX_REACH = 2 // metres from the middle of the picture, on each axis: as far as arms reach
 const PUSH = 0.01, RADIANS_A_PIXEL = 0.35 * Math.PI / 180
@@ -12,11 +13,26 @@ class HandMover {
       if (act(event)) event.stopImmediatePropagation()
       canvas.classList.toggle('moving', this.held !== null)
     }, { capture: true, passive: false })
-    hear('pointerdown', event => event.button === 2 && this.take(event))
-    hear('pointermove', event => this.holds(event) && this.follow(event))
+    hear('pointerdown', event => event.pointerType === 'touch' ? this.wait(event) : event.button === 2 && this.take(event))
+    hear('pointermove', event => this.holds(event) ? this.follow(event) : this.stayOrForget(event))
     hear('wheel', event => this.held && this.push(event))
     for (const end of ['pointerup', 'pointercancel', 'lostpointercapture'])
-      hear(end, event => this.holds(event) && this.letGo(event))
+      hear(end, event => this.holds(event) ? this.letGo(event) : clearTimeout(this.timer))
+  }
+  // A finger takes the hand below it when it has been still for a while; a second finger is the camera's.
+  wait(event) {
+    clearTimeout(this.timer)
+    this.first = event
+    if (!this.held && event.isPrimary) this.timer = setTimeout(() => {
+      if (!this.take(event)) return
+      this.camera.forget(event)
+      this.canvas.classList.add('moving')
+    }, HOLD)
+    return this.held !== null
+  }
+  stayOrForget(event) {
+    const { first } = this
+    if (first && Math.hypot(event.clientX - first.clientX, event.clientY - first.clientY) > 10) clearTimeout(this.timer)
   }
   holds(event) { return this.held !== null && event.pointerId === this.held.pointer }
 

@@ -1,4 +1,5 @@
-// The panel: buttons, keys, figures.
+// The panel: sections as in the window, with their buttons, keys and figures; the search, the hints and the
+// status bar.
 // As in Blender: where one looks from, and where from with Ctrl.
 const RIGHT_ANGLE = Math.PI / 2
 const VIEWS = {
@@ -8,69 +9,92 @@ const VIEWS = {
 }
 // What the page does by itself, of COMMANDS, which the server fills in from its table (apps/commands).
 const OWN = {
-  'show hands': panel => panel.toggle('skin'),
-  'show bones': panel => panel.toggle('bones'),
-  'show vectors': panel => panel.toggle('vectors'),
-  'show radii': panel => panel.toggle('radii'),
-  'show contact': panel => panel.toggle('contacts'),
-  'show facets': panel => panel.toggle('facets'),
   'view front': panel => panel.camera.look(...VIEWS[1].plain),
   'view right': panel => panel.camera.look(...VIEWS[3].plain),
   'view top': panel => panel.camera.look(...VIEWS[7].plain),
   'frame all': panel => panel.camera.frame(),
   'fold panel': panel => panel.fold(),
+  'search': panel => panel.search(),
   'list keys': panel => panel.help(),
 }
 const MAX_UNDOABLE = 48 // that the server lists
+const MESSAGE_LASTS = 8000 // ms, in place of the state
+const HINTS_CLOSED = 'nendo-hints=closed' // a cookie: it is that of all ports of this machine
 const helpOf = ({ help, keys }, refusal) => `${help}${refusal ? '\n' + refusal : ''} (${keys.join(', ')})`
-const element = id => document.getElementById(id)
+const commandNamed = wanted => COMMANDS.find(({ name }) => name === wanted)
+const grouped = number => String(number).replace(/\B(?=(\d{3})+$)/g, ',')
+const setText = (part, text) => { if (part.textContent !== text) part.textContent = text }
 
 class Panel {
+  // shown: the parts of the picture, by their names.
   constructor(ask, shown) {
-    Object.assign(this, { ask, camera: null, live: false, settings: null, history: null, puppet: null, states: new Map() })
-    this.late = new Chart(element('chart-late'), 'late', 'ms')
-    this.rate = new Chart(element('chart-rate'), 'ticks per second', 'Hz')
-    this.bytes = new Chart(element('chart-bytes'), 'a message', 'bytes')
+    Object.assign(this, { ask, shown, camera: null, live: false, settings: null, history: null, puppet: null, states: new Map(), devices: [[], []] })
+    this.charts = Object.fromEntries(['late', 'uneven', 'picture'].map(name => [name, new Chart(name)]))
+    this.hands = [0, 1].map(() => {
+      const part = make('div', element('hands'), { className: 'hand', hidden: true })
+      return { part, lines: make('p', part), bars: make('canvas', part, { className: 'bars' }) }
+    })
     this.shaping = new Shaping(this.ask)
-    this.buttons = new Map(COMMANDS.filter(({ button }) => button).map(command => [command, this.makeButton(command)]))
-    for (const part of ['skin', 'bones', 'vectors', 'radii', 'contacts', 'facets'])
-      element('show-' + part).addEventListener('change', event => shown(part, event.target.checked))
-    element('help-button').addEventListener('click', () => this.help())
-    element('fold-button').addEventListener('click', () => this.fold())
-    for (const part of document.querySelectorAll('[data-help]'))
-      part.title = helpOf(COMMANDS.find(({ name }) => name === part.dataset.help))
+    this.buttons = COMMANDS.filter(({ button }) => button).map(command => this.makeButton(command))
+    this.boxes = new Map(Object.keys(shown).map(part => ['show ' + part, this.makeBox('parts', part, commandNamed('show ' + part))]))
+    for (const button of document.querySelectorAll('[data-own]')) {
+      const command = commandNamed(button.dataset.own)
+      button.setAttribute('aria-description', helpOf(command))
+      button.addEventListener('click', () => this.give(command))
+    }
     for (const { keys, help } of COMMANDS) {
       const row = element('keys').insertRow()
-      row.insertCell().appendChild(document.createElement('kbd')).textContent = keys.join(', ')
+      make('kbd', row.insertCell(), { textContent: keys.join(', ') })
       row.insertCell().textContent = help
     }
     document.addEventListener('keydown', event => this.press(event))
+    element('words').addEventListener('input', () => this.find(0))
+    element('words').addEventListener('keydown', event => this.searchKey(event))
+    this.hint()
+    this.showParts()
     this.connected(false)
   }
 
+  makeBox(parent, text, command) {
+    const line = make('label', element(parent), { className: 'box' })
+    make('span', line, { textContent: text })
+    line.setAttribute('aria-description', helpOf(command))
+    const box = make('input', line, { type: 'checkbox' })
+    box.addEventListener('click', event => {
+      event.preventDefault() // it shows what has come of it
+      this.give(command)
+    })
+    return box
+  }
+  // Symmetry is a box, as in the window.
   makeButton(command) {
-    const button = element('buttons').appendChild(document.createElement('button'))
-    button.dataset.request = command.name
-    button.addEventListener('click', () => this.give(command))
-    return button
+    const { name, group } = command, isBox = name === 'symmetry'
+    const control = isBox ? this.makeBox('group-' + group, name, command) : make('button', element('group-' + group))
+    control.dataset.request = name
+    if (!isBox) control.addEventListener('click', () => this.give(command))
+    return { command, control, isBox, line: isBox ? control.parentNode : control }
   }
   // The server says in advance which commands are on, and why some are not possible.
-  stateOf(name) { return this.states.get(name) || { isOn: false, refusal: '' } }
+  stateOf(name) { return this.states.get(name) || { isOn: false, isHidden: false, refusal: '' } }
   give(command) {
+    if (this.boxes.has(command.name)) return this.toggle(command.name)
     if (!command.isForRun) return OWN[command.name](this)
     const { refusal } = this.stateOf(command.name)
-    if (refusal) return this.report(refusal)
+    this.report(refusal)
+    if (refusal) return
     if (command.isSetting) this.shaping.giveWay()
     this.ask(command.name)
   }
   press(event) {
-    if (event.altKey || event.metaKey) return
-    if (event.target.matches('select')) return // which has keys of its own
+    if (event.altKey || event.metaKey || element('search').open) return
+    if (event.target.matches('select, input[type=number]')) return // which have keys of their own
     if (event.ctrlKey) return this.pressWithCtrl(event)
     if (event.repeat) return
     if (event.key === 'Home' && event.target.matches('input[type=range]')) return
     const command = COMMANDS.find(({ keys }) => keys.includes(event.key))
-    if (command) this.give(command)
+    if (!command) return
+    if (event.key.length > 1) event.preventDefault() // the browser's own F3
+    this.give(command)
   }
   pressWithCtrl(event) {
     const key = event.key.toUpperCase(), view = VIEWS[key]
@@ -85,32 +109,92 @@ class Panel {
     this.showStates()
   }
   showStates() {
-    for (const [command, button] of this.buttons) {
-      const { isOn, refusal } = this.stateOf(command.name)
-      button.disabled = !this.live || refusal !== ''
-      button.title = helpOf(command, refusal)
-      button.textContent = isOn ? command.buttonOn : command.button
-      button.classList.toggle('on', isOn)
+    const isPuppet = Boolean(this.update && this.update.isPuppet) // whose masks are edited in the window
+    for (const { command, control, isBox, line } of this.buttons) {
+      const { isOn, isHidden, refusal } = this.stateOf(command.name)
+      line.hidden = isHidden || (isPuppet && command.name.startsWith('mask '))
+      line.setAttribute('aria-disabled', !this.live || refusal !== '')
+      line.setAttribute('aria-description', helpOf(command, refusal))
+      if (isBox) control.checked = isOn
+      else setText(control, isOn ? command.buttonOn : command.button)
+      control.classList.toggle('on', isOn)
     }
   }
+  showParts() { for (const [name, box] of this.boxes) box.checked = this.shown[name.slice(5)] }
   fold() {
     const folded = element('panel').classList.toggle('folded')
-    element('fold-button').textContent = folded ? '+' : '\u2212'
+    document.querySelector('[data-own="fold panel"]').textContent = folded ? '+' : '\u2212'
     this.camera.changed()
   }
-  // What the panel covers of the page's width, as far as it counts.
+  // What the panel covers of the page's width.
   covered() {
     const panel = element('panel')
     return panel.classList.contains('folded') ? 0 : Math.min(0.4, panel.getBoundingClientRect().right / innerWidth)
   }
-  toggle(part, kind = 'show-') { element(kind + part).click() }
+  toggle(name) {
+    const part = name.slice(5)
+    this.shown[part] = !this.shown[part]
+    this.showParts()
+    this.camera.changed()
+  }
   help() {
     const dialog = element('help')
     if (dialog.open) dialog.close()
     else dialog.showModal()
   }
+  search() {
+    element('words').value = ''
+    element('search').showModal()
+    this.find(0)
+  }
+  // The commands that have each word in their name, their button or their help.
+  find(chosen) {
+    const words = element('words').value.toLowerCase().split(' ')
+    const fits = ({ name, button, help }) => words.every(word => `${name} ${button} ${help}`.toLowerCase().includes(word))
+    this.found = COMMANDS.filter(fits)
+    this.chosen = Math.max(0, Math.min(chosen, this.found.length - 1))
+    element('found').replaceChildren()
+    this.found.forEach((command, at) => {
+      const { refusal } = this.stateOf(command.name)
+      const row = make('button', element('found'), { ariaDisabled: refusal !== '', ariaCurrent: at === this.chosen })
+      for (const textContent of [command.name, command.keys.join(', '), refusal || command.help]) make('span', row, { textContent })
+      row.addEventListener('click', () => this.take(command))
+      if (at === this.chosen) row.scrollIntoView({ block: 'nearest' })
+    })
+  }
+  take(command) {
+    element('search').close()
+    if (command) this.give(command)
+  }
+  searchKey(event) {
+    const steps = { ArrowDown: 1, ArrowUp: -1 }[event.key]
+    if (steps) this.find(this.chosen + steps)
+    else if (event.key === 'Enter') this.take(this.found[this.chosen])
+    else return
+    event.preventDefault()
+  }
+  // Over the picture at the first start, until they are closed.
+  hint() {
+    const hints = element('hints'), touches = { keys: 'finger', text: 'Turns the view, two shift and zoom; held on a hand, it moves it.' }
+    hints.hidden = document.cookie.includes(HINTS_CLOSED)
+    for (const { keys, text } of matchMedia('(pointer: coarse)').matches ? [...HINTS.slice(0, -1), touches] : HINTS) {
+      const line = make('p', hints)
+      make('b', line, { textContent: keys })
+      make('span', line, { textContent: text })
+    }
+    const last = make('p', hints)
+    make('span', last, { textContent: 'F3 finds any command, ? lists the keys.' })
+    make('button', last, { textContent: 'Do not show again' }).addEventListener('click', () => {
+      document.cookie = `${HINTS_CLOSED}; max-age=34560000; samesite=strict`
+      hints.hidden = true
+    })
+  }
 
-  report(words) { element('message').textContent = words }
+  // In the status bar, in place of the state.
+  report(words) {
+    setText(element('message'), words)
+    this.reported = performance.now()
+  }
   say(words) {
     element('banner').textContent = words
     element('banner').hidden = words === ''
@@ -129,15 +213,12 @@ class Panel {
   setHistory(history) {
     this.history = history
     const words = history.steps.map(({ kind, at }) => `${Math.floor(at / 60)}:${String(Math.floor(at % 60)).padStart(2, '0')}  ${kind}`)
-    const lines = [history.undoable < MAX_UNDOABLE ? 'the beginning' : 'earlier', ...words].map((text, at) => {
-      const line = document.createElement('button')
-      line.textContent = text
-      line.className = at > history.undoable ? 'undone' : ''
-      line.setAttribute('aria-current', at === history.undoable ? 'step' : 'false')
+    element('history').replaceChildren()
+    const lines = [history.undoable < MAX_UNDOABLE ? 'the beginning' : 'earlier', ...words].map((textContent, at) => {
+      const line = make('button', element('history'), { textContent, className: at > history.undoable ? 'undone' : '', ariaCurrent: at === history.undoable })
       line.addEventListener('click', () => this.goTo(at))
       return line
     })
-    element('history').replaceChildren(...lines)
     lines[history.undoable].scrollIntoView({ block: 'nearest' })
   }
   goTo(at) {
@@ -149,11 +230,8 @@ class Panel {
   setPuppet(puppet) {
     this.puppet = puppet
     element('puppet').hidden = puppet.functions.length === 0
-    element('functions').replaceChildren(...puppet.functions.map(({ name, signal }) => {
-      const line = document.createElement('div')
-      line.textContent = `${name}: ${signal}`
-      return line
-    }))
+    element('functions').replaceChildren()
+    for (const { name, signal } of puppet.functions) make('div', element('functions'), { textContent: `${name}: ${signal}` })
   }
   setSettings(settings) {
     this.settings = settings
@@ -163,57 +241,54 @@ class Panel {
   add(update) {
     const before = this.update
     this.update = update
-    this.late.add(update.maxLate / 1000)
-    this.bytes.add(update.bytes)
-    const now = performance.now()
-    if (before && now - this.rated > 200) {
-      this.rate.add((update.ticks - this.ratedTicks) / (now - this.rated) * 1000)
-      Object.assign(this, { rated: now, ratedTicks: update.ticks })
-    } else if (!before || update.ticks < before.ticks) {
-      Object.assign(this, { rated: now, ratedTicks: update.ticks })
-    }
+    if (!before || before.isPuppet !== update.isPuppet) this.showStates()
+    this.charts.late.add(update.maxLate / 1000)
+    this.charts.uneven.add(Math.abs(update.sinceLast / 1000 - 1000 / this.model.rate))
   }
 
   draw() {
     const { update, model, settings } = this
     if (!update || !model || !settings) return
-    element('hold').textContent = update.held ? 'The hands hold the model.' : 'The hands hold nothing.'
-    const lost = update.lost + update.skipped
-    element('timing').textContent = `${model.rate} Hz wanted, ${settings.mode}\n${update.ticks} ticks, ${update.missed} missed` +
-      `${lost > 0 ? `, ${lost} not shown` : ''}\n${update.restChanges} changes of the rest shape`
+    if (performance.now() - this.reported > MESSAGE_LASTS) setText(element('message'), '')
+    element('state').hidden = element('message').textContent !== ''
+    this.drawStatus()
+    setText(element('timing'), `${update.ticks} ticks, ${update.restChanges} changes of the rest shape` +
+      (update.lost + update.skipped > 0 ? `, ${update.lost + update.skipped} not shown` : ''))
     this.drawClay()
-    for (const chart of [this.late, this.rate, this.bytes]) chart.draw()
+    for (const chart of Object.values(this.charts)) chart.draw()
     update.hands.forEach((hand, slot) => this.drawHand(hand, slot))
   }
-  drawClay() {
-    const { clay, settings, model } = this
-    element('clay').hidden = !clay || settings.mode !== 'clay'
-    if (element('clay').hidden) return
-    const cm3 = volume => (volume * (100 / model.unitsPerMetre) ** 3).toFixed(1)
-    element('clay-state').textContent = `touches at ${clay.contacts.length} places, ${clay.penetration.toFixed(3)} mm deep\n` +
-      (clay.first > 0 ? `volume ${cm3(clay.volume)} cm\u00b3, at first ${cm3(clay.first)}` : 'volume not kept: no closed surface')
+  cm3(volume) { return (volume * (100 / this.model.unitsPerMetre) ** 3).toFixed(1) }
+  drawStatus() {
+    const { update, model, clay, settings } = this
+    const items = [update.held ? 'holds the model' : 'holds nothing', `${grouped(model.vertices)} vertices`]
+    if (clay && settings.mode === 'clay' && clay.first > 0) items.push(`${this.cm3(clay.volume)} cm3`)
+    items.push(`${model.rate} Hz, ${grouped(update.missed)} missed`)
+    update.hands.forEach((hand, slot) => {
+      if (!hand) return
+      const age = this.devices[slot].map(({ state }) => /\d+ ms(?= old)/.exec(state)).find(found => found)
+      items.push(`${slot ? 'right' : 'left'} ${hand.silent ? 'silent' : hand.wristLost ? 'tracker lost' : age || ''}`)
+    })
+    const state = element('state')
+    if (state.children.length !== items.length) state.replaceChildren(...items.map(() => document.createElement('span')))
+    items.forEach((item, at) => setText(state.children[at], item))
   }
-  partOf(slot) {
-    const id = 'hand-' + slot
-    if (element(id)) return element(id)
-    const part = element('hands').appendChild(document.createElement('div'))
-    Object.assign(part, { id, className: 'hand', hidden: true })
-    part.appendChild(document.createElement('div'))
-    part.appendChild(document.createElement('canvas')).className = 'bars'
-    return part
+  drawClay() {
+    const { clay, settings } = this
+    element('contact').hidden = !clay || settings.mode !== 'clay'
+    if (element('contact').hidden) return
+    setText(element('clay'), `touches at ${clay.contacts.length} places, ${clay.penetration.toFixed(3)} mm deep\n` +
+      (clay.first > 0 ? `volume ${this.cm3(clay.volume)} cm3, at first ${this.cm3(clay.first)}` : 'volume not kept: no closed surface'))
   }
   setDevices(devices) {
-    devices.forEach((ofHand, slot) => this.partOf(slot).firstChild.replaceChildren(...ofHand.map(({ title, state }) => {
-      const line = document.createElement('div')
-      line.textContent = `${title}\n${state}`
-      return line
-    })))
+    this.devices = devices
+    devices.forEach((some, slot) => setText(this.hands[slot].lines, some.map(({ title, state }) => `${title}\n${state}`).join('\n')))
   }
   drawHand(hand, slot) {
-    const part = this.partOf(slot)
+    const { part, bars } = this.hands[slot]
     part.hidden = !hand
     if (!hand) return
-    part.className = hand.silent || hand.wristLost ? 'hand silent' : 'hand'
-    drawBends(part.lastChild, hand)
+    part.classList.toggle('silent', hand.silent || hand.wristLost)
+    drawBends(bars, hand)
   }
 }

@@ -1,72 +1,56 @@
 // Draws: the model, the hands, what they do to it, and the ground.
 const CLAY = { colour: [0.44, 0.20, 0.115], gloss: 0.07, opacity: 1, rim_opacity: 1 }
-const SKIN = { colour: [0.10, 0.19, 0.30], gloss: 0.22, opacity: 0.74, rim_opacity: 1 }
-const SILENT = { colour: [0.22, 0.22, 0.22], gloss: 0.10, opacity: 0.6, rim_opacity: 1 }
+// A hand is opaque before the ground, and one sees the model through it. A silent glove's is a mere shade.
+const SKIN = { colour: [0.33, 0.345, 0.37], gloss: 0.10, opacity: 0.64, rim_opacity: 1 }
+const SILENT = { colour: [0.22, 0.22, 0.22], gloss: 0, opacity: 0.25, rim_opacity: 0.85 }
 const BONE = { colour: [0.80, 0.78, 0.70], gloss: 0.10, opacity: 1, rim_opacity: 1 }
 const ARROW = { colour: [0.95, 0.52, 0.02], gloss: 0.20, opacity: 1, rim_opacity: 1 }
 const REACH = { colour: [0.80, 0.40, 0.05], gloss: 0, opacity: 0, rim_opacity: 0.3, unlit: true }
-const CONTACTS = [[0.95, 0.80, 0.10], [0.95, 0.40, 0.02], [0.75, 0.04, 0.02]].map(colour => ({ ...ARROW, colour }))
+const CONTACTS = [[0.95, 0.80, 0.10], [0.95, 0.40, 0.02], [0.75, 0.04, 0.02]].map(colour => ({ ...BONE, colour }))
+const SOLID = 1 // in the stencil: a model, a bone, an arrow
 const LIT = { grid: 0, dark: 0, facets: false, unlit: false, fade: 1, shadow: [0, 0, 0] }
 
 // A ball of two halves; the fourth number says to which end of a capsule a half belongs.
 function unitCapsule(rings = 8, sides = 20) {
   const places = [], corners = []
-  for (let ring = 0; ring < 2 * rings; ++ring) {
-    const end = ring < rings ? 0 : 1
-    const latitude = Math.PI / 2 * (end ? (ring - rings) / (rings - 1) : ring / (rings - 1) - 1)
+  for (let ring = 0; ring < 2 * rings; ++ring)
     for (let side = 0; side < sides; ++side) {
-      const turn = 2 * Math.PI * side / sides
+      const end = ring < rings ? 0 : 1, turn = 2 * Math.PI * side / sides
+      const latitude = Math.PI / 2 * (end ? (ring - rings) / (rings - 1) : ring / (rings - 1) - 1)
       places.push(Math.cos(latitude) * Math.cos(turn), Math.cos(latitude) * Math.sin(turn), Math.sin(latitude), end)
-    }
-  }
-  for (let ring = 0; ring + 1 < 2 * rings; ++ring)
-    for (let side = 0; side < sides; ++side) {
       const a = ring * sides + side, b = ring * sides + (side + 1) % sides
-      corners.push(a, b, b + sides, a, b + sides, a + sides)
+      if (ring + 1 < 2 * rings) corners.push(a, b, b + sides, a, b + sides, a + sides)
     }
   return { places: new Float32Array(places), corners: new Uint16Array(corners) }
 }
 
 class Scene {
-  constructor(canvas) {
+  // parts: what is shown, by name.
+  constructor(canvas, parts) {
     const gl = canvas.getContext('webgl2', { antialias: true, alpha: true, stencil: true, powerPreference: 'high-performance' })
     if (!gl) throw new Error('this browser shows no WebGL2')
     this.gl = gl
     this.canvas = canvas
     this.radii = [0, 0, 0, 0, 0]
-    this.parts = { skin: true, bones: true, vectors: true, radii: false, contacts: false, facets: false }
+    this.parts = parts
+    this.skins = null // of the left and of the right hand, when they have come
     this.contacts = []
     const light = glsl('plain') + glsl('light')
     this.model = makeProgram(gl, glsl('deform') + glsl('model'), glsl('paint') + glsl('light'))
+    this.skin = makeProgram(gl, glsl('skin'), light)
     this.capsule = makeProgram(gl, glsl('capsule'), light)
     this.ground = makeProgram(gl, glsl('ground'), light)
     this.makeCapsules()
-    this.groundArray = gl.createVertexArray()
-    gl.bindVertexArray(this.groundArray)
-    makeBuffer(gl, gl.ARRAY_BUFFER, new Float32Array([-3, 0, -3, 3, 0, -3, -3, 0, 3, 3, 0, 3]), gl.STATIC_DRAW)
-    gl.enableVertexAttribArray(0)
-    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0)
-    gl.bindVertexArray(null)
+    const square = makeBuffer(gl, gl.ARRAY_BUFFER, new Float32Array([-3, 0, -3, 3, 0, -3, -3, 0, 3, 3, 0, 3]), gl.STATIC_DRAW)
+    this.groundArray = makeArray(gl, [[square, 3]])
   }
 
   makeCapsules() {
-    const { gl } = this
-    const unit = unitCapsule()
-    this.capsuleArray = gl.createVertexArray()
-    this.capsuleCorners = unit.corners.length
-    gl.bindVertexArray(this.capsuleArray)
-    makeBuffer(gl, gl.ARRAY_BUFFER, unit.places, gl.STATIC_DRAW)
-    gl.enableVertexAttribArray(0)
-    gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 0, 0)
-    makeBuffer(gl, gl.ELEMENT_ARRAY_BUFFER, unit.corners, gl.STATIC_DRAW)
+    const { gl } = this, { places, corners } = unitCapsule()
+    this.capsuleCorners = corners.length
     this.instances = gl.createBuffer()
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.instances)
-    for (const which of [1, 2]) {
-      gl.enableVertexAttribArray(which)
-      gl.vertexAttribPointer(which, 4, gl.FLOAT, false, 32, 16 * (which - 1))
-      gl.vertexAttribDivisor(which, 1)
-    }
-    gl.bindVertexArray(null)
+    const ends = [0, 16].map(offset => [this.instances, 4, { stride: 32, offset, divisor: 1 }])
+    this.capsuleArray = makeArray(gl, [[makeBuffer(gl, gl.ARRAY_BUFFER, places, gl.STATIC_DRAW), 4], ...ends], corners)
   }
 
   // fetchPicture, changed: as Paint takes them.
@@ -90,7 +74,14 @@ class Scene {
     })
     const metres = (number, axis) => number * this.scale + model.origin[axis] / model.unitsPerMetre
     this.origin = [metres((low[0] + high[0]) / 2, 0), metres(low[1], 1), metres((low[2] + high[2]) / 2, 2)]
-    this.height = (high[1] - low[1]) * this.scale
+    this.box = [low, high].map(corner => minus(corner.map(metres), this.origin))
+    this.height = this.box[1][1]
+  }
+  // Of the model and the hands, about the origin.
+  boxWith(hands) {
+    const places = [...this.box, ...hands.flatMap(hand => hand ? hand.joints.map(({ place }) => minus(place, this.origin)) : [])]
+    const [low, high] = [Math.min, Math.max].map(most => [0, 1, 2].map(axis => most(...places.map(place => place[axis]))))
+    return { low, high }
   }
 
   // Of the canvas, from its top left: where a place on the stage is drawn; null: behind the eye.
@@ -109,14 +100,25 @@ class Scene {
     gl.bindVertexArray(this.capsuleArray)
     gl.bindBuffer(gl.ARRAY_BUFFER, this.instances)
     gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(capsules.numbers), gl.STREAM_DRAW)
-    const triangles = () => gl.drawElementsInstanced(gl.TRIANGLES, this.capsuleCorners, gl.UNSIGNED_SHORT, 0, capsules.count)
-    if (material.opacity < 1 && material.opacity > 0) { // depth first, so that only its nearest layer is mixed in
+    gl.drawElementsInstanced(gl.TRIANGLES, this.capsuleCorners, gl.UNSIGNED_SHORT, 0, capsules.count)
+    gl.bindVertexArray(null)
+  }
+
+  setSkin(skin) { this.skins = [-1, 1].map(side => new Skin(this.gl, skin, side)) }
+  // Depth first, so that only its nearest layer is mixed in.
+  drawSkin({ slot, hand, joints }) {
+    const { gl } = this, material = hand.silent ? SILENT : SKIN
+    this.skins[slot].draw(this.skin, hand.bones, joints, { ...this.view, ...LIT, ...material }, triangles => {
       gl.colorMask(false, false, false, false)
       triangles()
       gl.colorMask(true, true, true, true)
-    }
-    triangles()
-    gl.bindVertexArray(null)
+      gl.stencilFunc(hand.silent ? gl.ALWAYS : gl.EQUAL, SOLID, 255)
+      triangles()
+      if (hand.silent) return
+      gl.stencilFunc(gl.NOTEQUAL, SOLID, 255)
+      this.skin.set({ opacity: 1 })
+      triangles()
+    })
   }
 
   resize() {
@@ -125,7 +127,7 @@ class Scene {
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height })
   }
 
-  // covered: what the panel covers of the width. The middle of the picture is that of the rest.
+  // covered: what the panel covers of the width.
   draw(camera, update, holds, covered) {
     const { gl, canvas } = this
     this.resize()
@@ -135,9 +137,10 @@ class Scene {
       const way = [c * x + s * z, y, c * z - s * x]
       return times(way, 1 / size(way))
     }
+    camera.covered = covered
     const aspect = canvas.width / Math.max(1, canvas.height)
     this.view = {
-      clip_of_world: camera.projection(aspect, aspect > 1.2 ? covered : 0), eye: camera.eye(),
+      clip_of_world: camera.projection(aspect), eye: camera.eye(),
       key: round([-0.55, 0.75, 0.55]), fill: round([0.85, 0.25, 0.50]), rim: round([0.45, 0.45, -0.80]),
     }
     gl.viewport(0, 0, canvas.width, canvas.height)
@@ -150,13 +153,19 @@ class Scene {
     if (!this.shape) return
     const beside = this.beside(update, holds)
     this.shape.prepare()
+    gl.enable(gl.STENCIL_TEST)
     this.drawGround(beside)
+    gl.clear(gl.STENCIL_BUFFER_BIT)
+    gl.stencilFunc(gl.ALWAYS, SOLID, 255)
+    gl.stencilOp(gl.KEEP, gl.KEEP, gl.REPLACE)
     this.model.use({ ...this.view, ...LIT, ...CLAY, scale: this.scale, offset: this.offset, facets: this.parts.facets })
     this.shape.draw(this.model, part => this.paint.each(this.model, CLAY.colour, part))
     this.capsules(beside.bones, BONE)
     this.capsules(beside.arrows, ARROW)
     beside.contacts.forEach((some, at) => this.capsules(some, CONTACTS[at]))
-    beside.skins.forEach(([skin, material]) => this.capsules(skin, material))
+    gl.stencilOp(gl.KEEP, gl.KEEP, gl.KEEP)
+    beside.skins.forEach(skin => this.drawSkin(skin))
+    gl.disable(gl.STENCIL_TEST)
     gl.depthMask(false)
     this.capsules(beside.reaches, REACH)
     gl.depthMask(true)
@@ -166,21 +175,18 @@ class Scene {
   beside(update, holds) {
     const parts = { bones: new Capsules(), arrows: new Capsules(), reaches: new Capsules(), contacts: CONTACTS.map(() => new Capsules()), skins: [] }
     if (!update) return parts
-    if (this.isByHands && this.parts.contacts) this.addContacts(parts.contacts)
+    if (this.isByHands && this.parts.contact) this.addContacts(parts.contacts)
     update.hands.forEach((given, slot) => {
       if (!given) return
       const place = at => minus(at, this.origin)
-      const hand = { joints: given.joints.map(joint => ({ place: place(joint.place), turn: joint.turn })) }
-      const skin = new Capsules()
-      if (this.parts.skin) fleshOf(hand, skin)
-      if (this.parts.bones) bonesOf(hand, parts.bones)
-      const material = given.silent ? SILENT : SKIN
-      parts.skins.push([skin, this.parts.bones ? material : { ...material, opacity: 1 }])
+      const joints = given.joints.map(joint => ({ place: place(joint.place), turn: joint.turn }))
+      if (this.parts.hands && this.skins) parts.skins.push({ slot, hand: given, joints })
+      if (this.parts.bones) bonesOf({ joints }, parts.bones)
       const starts = holds.starts[slot]
-      if (!update.held || !starts || this.isByHands) return // their tips hold nothing
+      if (!update.held || !starts || this.isByHands || update.isPuppet) return // their tips hold nothing
       TIPS.forEach((tip, finger) => {
         const start = place(starts[finger])
-        if (this.parts.vectors) arrow(start, hand.joints[tip].place, 0.007, parts.arrows)
+        if (this.parts.vectors) arrow(start, joints[tip].place, 0.007, parts.arrows)
         if (this.parts.radii) parts.reaches.add(start, start, this.radii[finger], this.radii[finger])
       })
     })
@@ -203,15 +209,16 @@ class Scene {
     this.ground.use({ ...this.view, ...LIT, grid: 0.1, fade })
     gl.bindVertexArray(this.groundArray)
     gl.depthMask(false)
+    gl.stencilFunc(gl.ALWAYS, 0, 255)
+    gl.stencilOp(gl.KEEP, gl.KEEP, gl.KEEP)
     gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4)
-    gl.enable(gl.STENCIL_TEST)
     gl.stencilFunc(gl.EQUAL, 0, 255)
     gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR)
     const shadow = { dark: 0.2, fade, shadow: this.view.key }
     this.model.use({ ...this.view, ...LIT, ...CLAY, ...shadow, scale: this.scale, offset: this.offset })
     this.shape.draw(this.model)
-    beside.skins.forEach(([skin]) => this.capsules(skin, { ...CLAY, ...shadow }))
-    gl.disable(gl.STENCIL_TEST)
+    for (const { slot, hand, joints } of beside.skins)
+      this.skins[slot].draw(this.skin, hand.bones, joints, { ...this.view, ...LIT, ...CLAY, ...shadow }, triangles => triangles())
     gl.depthMask(true)
   }
 }

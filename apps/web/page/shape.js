@@ -1,7 +1,6 @@
 // The model's shape on the graphics card: a base, and the fields that are drawn over it. A step that
 // bakes makes a new base by transform feedback, so that no vertex ever comes from the network but
-// with a whole shape.
-const BAKE_AT_ONCE = 256 * 64 // texels; a longer step is baked in several turns
+// with a whole shape. Along a surface there is no field: a puppet's vertices are summed up here.
 
 function normalsOf(places, corners) {
   const normals = new Float32Array(places.length)
@@ -23,6 +22,15 @@ function normalsOf(places, corners) {
   return normals
 }
 
+// The places that a step's vectors make of a base: each vertex moves by the sum of its terms, a value times a vector.
+function movedBy({ values, counts, ofVector }, base, vectors) {
+  const places = new Float32Array(base)
+  for (let vertex = 0, term = 0; vertex < counts.length; ++vertex)
+    for (const end = term + counts[vertex]; term < end; ++term)
+      for (let axis = 0; axis < 3; ++axis) places[3 * vertex + axis] += values[term] * vectors[3 * ofVector[term] + axis]
+  return places
+}
+
 const NOTHING = { count: 0, texels: [], weights: null }
 
 class Shape {
@@ -38,9 +46,7 @@ class Shape {
     this.states = [this.makeState(), this.makeState()] // the first is the base
     this.feedback = gl.createTransformFeedback()
     this.texture = gl.createTexture()
-    this.pending = NOTHING
     this.weights = null // of a puppet
-    this.isMoved = false // the other state is what the pending vectors make of the base
     this.number = null // of the frame whose shape this is; null: none has come
     this.setBase(model.places)
   }
@@ -75,7 +81,6 @@ class Shape {
 
   dispose() {
     const { gl } = this
-    if (this.weights) this.weights.dispose()
     for (const { array, buffers } of this.states) {
       gl.deleteVertexArray(array)
       buffers.forEach(buffer => gl.deleteBuffer(buffer))
@@ -86,15 +91,24 @@ class Shape {
     gl.deleteTexture(this.texture)
   }
 
-  setBase(places) {
+  // base: null if only the card has it. isOld: the card has another one.
+  setBase(places) { Object.assign(this, { base: places, isOld: true, pending: NOTHING, isMoved: false }) }
+  upload(state, places) {
     const { gl } = this
     const data = [places, normalsOf(places, this.model.corners)]
-    this.states[0].buffers.forEach((buffer, which) => {
+    state.buffers.forEach((buffer, which) => {
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer)
       gl.bufferSubData(gl.ARRAY_BUFFER, 0, forDrawn(data[which], 3, this.seams))
     })
     gl.bindBuffer(gl.ARRAY_BUFFER, null)
-    this.pending = NOTHING
+  }
+  // In the model's order, whose vertices come first.
+  read(state) {
+    const { gl } = this, places = new Float32Array(3 * this.model.vertices)
+    gl.bindBuffer(gl.ARRAY_BUFFER, state.buffers[0])
+    gl.getBufferSubData(gl.ARRAY_BUFFER, 0, places)
+    gl.bindBuffer(gl.ARRAY_BUFFER, null)
+    return places
   }
 
   takeShape(shape) {
@@ -103,25 +117,34 @@ class Shape {
   }
 
   takeWeights(weights) {
-    if (!this.weights) this.weights = new Weights(this.gl, this)
-    this.weights.take(weights)
+    this.weights = weights
     this.pending = NOTHING // which was for those before
   }
 
   takeStep(step) {
     if (step.weights !== null && (!this.weights || step.weights !== this.weights.number)) return
-    this.isMoved = false
-    this.pending = step.bakes ? NOTHING : step
-    if (!step.bakes || step.count === 0) return
-    if (step.weights === null) return this.bakeFields(step)
-    this.weights.run(step)
+    if (!step.bakes) Object.assign(this, { pending: step, isMoved: false })
+    else if (step.weights !== null) this.setBase(this.moved(step))
+    else this.bakeFields(step)
+  }
+  bakeFields(step) {
+    this.pending = NOTHING
+    if (step.count === 0) return
+    this.run(step)
     this.states.reverse()
+    this.base = null
+  }
+  moved({ texels }) {
+    this.base ||= this.read(this.states[0])
+    return movedBy(this.weights, this.base, texels)
   }
 
-  // Makes what is pending the other state.
-  makeMoved() {
-    if (this.pending.weights === null) return this.run(this.pending)
-    if (!this.isMoved) this.weights.run(this.pending)
+  // Before anything is drawn, or made of the base: what the card lacks. Makes pending vectors the other state.
+  prepare() {
+    if (this.isOld) this.upload(this.states[0], this.base)
+    this.isOld = false
+    if (this.pending.weights === null || this.isMoved) return
+    this.upload(this.states[1], this.moved(this.pending))
     this.isMoved = true
   }
 
@@ -141,17 +164,12 @@ class Shape {
 
   // From the base to the other state.
   run(fields) {
-    const { gl } = this
+    const { gl } = this, { buffers } = this.states[1]
+    this.prepare()
     this.bake.use()
     this.sendFields(fields, this.bake)
-    this.transform(this.feedback, this.states[1].buffers)
-  }
-
-  // Writes what the program that is in use makes of the base.
-  transform(feedback, buffers) {
-    const { gl } = this
     gl.bindVertexArray(this.states[0].array)
-    gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, feedback)
+    gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, this.feedback)
     buffers.forEach((buffer, which) => gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, which, buffer))
     gl.enable(gl.RASTERIZER_DISCARD)
     gl.beginTransformFeedback(gl.POINTS)
@@ -163,31 +181,17 @@ class Shape {
     gl.bindVertexArray(null)
   }
 
-  bakeFields(step) {
-    for (const part of inParts(step, BAKE_AT_ONCE)) {
-      this.run(part)
-      this.states.reverse()
-    }
-  }
-
-  // The vertices as the shader makes them, in the mesh's order and units.
+  // The vertices as they are drawn, in the mesh's order and units.
   vertices() {
-    const { gl, model } = this
-    this.makeMoved()
-    const read = new Float32Array(3 * model.vertices)
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.states[1].buffers[0])
-    gl.getBufferSubData(gl.ARRAY_BUFFER, 0, read)
-    gl.bindBuffer(gl.ARRAY_BUFFER, null)
-    const result = new Float64Array(3 * model.vertices)
+    const { model } = this, result = new Float64Array(3 * model.vertices)
+    if (this.pending.weights === null) this.run(this.pending)
+    this.prepare()
+    const places = this.read(this.states[1])
     model.order.forEach((vertex, at) => {
-      for (let axis = 0; axis < 3; ++axis)
-        result[3 * vertex + axis] = model.origin[axis] + model.unit * read[3 * at + axis]
+      for (let axis = 0; axis < 3; ++axis) result[3 * vertex + axis] = model.origin[axis] + model.unit * places[3 * at + axis]
     })
     return result
   }
-
-  // Before the program is used that draws: what that needs of others.
-  prepare() { if (this.pending.weights !== null) this.makeMoved() }
 
   // paint: calls back for each part; by default there is one.
   draw(program, paint = part => part(0, this.model.corners.length)) {
@@ -197,22 +201,4 @@ class Shape {
     paint((first, count) => gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 4 * first))
     gl.bindVertexArray(null)
   }
-}
-
-// Whole fields, so many texels at once; one that is halfway stays with the next.
-function inParts(step, most) {
-  const parts = []
-  let part = { count: 0, texels: [] }, isHalfway = false
-  for (let at = 0, field = 0; field < step.count; ++field) {
-    const size = 4 * (1 + (step.texels[at + 2] ? 3 : 0) + 2 * step.texels[at])
-    if (!isHalfway && part.count > 0 && part.texels.length + size > 4 * most) {
-      parts.push(part)
-      part = { count: 0, texels: [] }
-    }
-    for (let n = at; n < at + size; ++n) part.texels.push(step.texels[n])
-    part.count += 1
-    isHalfway = step.texels[at + 3] >= 2
-    at += size
-  }
-  return [...parts, part]
 }
