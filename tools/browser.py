@@ -137,15 +137,15 @@ class Browser:
     def touch(self, kind, *points):
         self.ask("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x, "y": y, "id": n} for n, (x, y) in enumerate(points)])
 
-    def tap(self, selector, hold_s=0.05):
+    def tap(self, selector, hold_until="true"):
         self.touch("touchStart", self.middle(selector))
-        time.sleep(hold_s)
+        self.wait(hold_until)
         self.touch("touchEnd")
 
-    def swipe(self, *fingers, hold_s=0.0):
+    def swipe(self, *fingers, hold_until="true"):
         """Of each finger: from where to where."""
         self.touch("touchStart", *[start for start, _ in fingers])
-        time.sleep(hold_s)
+        self.wait(hold_until)
         for places in zip(*[way(*finger) for finger in fingers]):
             self.touch("touchMove", *places)
         self.touch("touchEnd")

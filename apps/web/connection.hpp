@@ -30,6 +30,7 @@ enum Fact : std::size_t {
   history_fact,
   puppet_fact,
   clay_fact,
+  wire_fact,
   commands_fact,
   devices_fact,
   fact_count

@@ -132,14 +132,18 @@ void Server::follow(const flow::Frame& frame, const puppet::Rig* rig) {
   set_fact(history_fact, frame.steps.version, [&] { return message_of(frame.steps); });
   set_fact(puppet_fact, frame.puppet, [&] { return message_of(frame.puppet, rig); });
   Work::Inbox& inbox = work_->inbox;
+  bool has_clay = frame.clay.is_clay || frame.parts.count > 0;
+  bool has_wire = frame.wire.is_drawing();
   {
     const std::scoped_lock lock(inbox.mutex);
     const HostTime now = HostClock::now();
-    const bool is_shown = frame.clay.is_clay || frame.parts.count > 0;
-    if ((!inbox.facts[clay_fact] && !is_shown) || now < inbox.next_clay) return;
-    inbox.next_clay = now + period;
+    if (now < inbox.next_marks) return;
+    inbox.next_marks = now + period;
+    has_clay = has_clay || inbox.facts[clay_fact]; // which it once was
+    has_wire = has_wire || inbox.facts[wire_fact];
   }
-  set_fact(clay_fact, clay_message(frame));
+  if (has_clay) set_fact(clay_fact, clay_message(frame));
+  if (has_wire) set_fact(wire_fact, wire_message(frame));
 }
 
 void Server::set_devices(std::string_view lines) {

@@ -58,9 +58,9 @@ public:
     std::mutex mutex;              ///< guards the other members
     std::optional<Presented> next; ///< set by present(), not taken yet
     std::uint16_t loops = 0;
-    std::string report;   ///< the newest report; empty: already sent
-    HostTime next_clay{}; ///< the earliest time of the next clay message
-    Facts facts;          ///< messages; null until they are set
+    std::string report;    ///< the newest report; empty: already sent
+    HostTime next_marks{}; ///< the earliest time of the next message about clay or a wire
+    Facts facts;           ///< messages; null until they are set
     std::array<std::uint64_t, fact_count> versions{}; ///< the last versions of versioned facts
     std::vector<Weights> weights;                     ///< oldest first
     std::uint64_t weights_in_use = 0;

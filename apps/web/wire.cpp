@@ -209,6 +209,21 @@ std::vector<std::byte> clay_message(const flow::Frame& frame) {
   return message;
 }
 
+std::vector<std::byte> wire_message(const flow::Frame& frame) {
+  constexpr std::size_t head_bytes = 4, place_bytes = 24;
+  const auto places =
+      frame.wire.is_drawing() ? frame.wire.places() : decltype(frame.wire.places()){};
+  std::vector<std::byte> message(head_bytes + place_bytes * places.size());
+  WireWriter out(message);
+  out.put(MessageType::wire);
+  out.put(std::uint8_t{0});
+  out.put(static_cast<std::uint16_t>(places.size()));
+  for (const deform::WirePlace& place : places)
+    for (const Eigen::Vector3d& end : {place.from, place.to})
+      out.put(Eigen::Vector3f((end / frame.units_per_metre).cast<float>()));
+  return message;
+}
+
 void write_pose(const Eigen::Isometry3d& pose, WireWriter& out) noexcept {
   out.put(Eigen::Vector3f(pose.translation().cast<float>()));
   const Eigen::Quaternionf turn(pose.linear().cast<float>());

@@ -28,7 +28,8 @@ enum class MessageType : std::uint8_t {
   puppet = 7,
   clay = 8,
   commands = 9,
-  devices = 10
+  devices = 10,
+  wire = 11
 };
 enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 enum class StepContent : std::uint8_t { fields = 0, vectors = 1 };
@@ -194,6 +195,8 @@ std::vector<std::byte> message_of(const flow::StepList& steps);
 std::vector<std::byte> message_of(std::uint32_t number, const puppet::Rig* rig);
 /// Returns the message with the clay's contacts and volume. Allocates.
 std::vector<std::byte> clay_message(const flow::Frame& frame);
+/// Returns the message with the wire or knife that is being drawn. Allocates.
+std::vector<std::byte> wire_message(const flow::Frame& frame);
 /// Writes a position and a rotation as a unit quaternion x, y, z, w: pose_bytes.
 void write_pose(const Eigen::Isometry3d& pose, WireWriter& out) noexcept;
 void write_hand(const flow::HandFrame& hand, WireWriter& out) noexcept;

@@ -54,7 +54,7 @@ function drawBends(canvas, hand) {
   if (canvas.clientWidth === 0) return
   const { pen, width, height } = penOf(canvas), step = width / 17
   bendsOf(hand).forEach((bend, joint) => {
-    const x = (joint + Math.floor(joint / 3) * 0.5) * step, long = Math.min(1, bend / 110) * (height - 2)
+    const x = (joint + Math.floor(joint / 3) * 0.5) * step, long = Math.min(1, bend / 110) * (height - 17) // below its title
     pen.fillStyle = colour('--chart')
     pen.fillRect(x, height - long, step * 0.8, long)
   })

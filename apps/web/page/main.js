@@ -6,9 +6,10 @@ const SERVICE_RESTART = 1012
 const counts = { updates: 0, updateBytes: 0, shapes: 0, weights: 0, bakes: 0, draws: 0 }
 
 const shown = { hands: true, bones: false, vectors: true, radii: false, contact: false, facets: false }
+const marks = { clay: null, wire: [] } // beside the model
 const panel = new Panel(ask, shown)
 try {
-  scene = new Scene(element('scene'), shown)
+  scene = new Scene(element('scene'), shown, marks)
 } catch (error) {
   trouble = `No picture: ${error.message}. Figures and buttons work all the same.`
   panel.say(trouble)
@@ -84,9 +85,10 @@ function open(model) {
     else if (type === 5) panel.setHistory(readSteps(data))
     else if (type === 7) panel.setPuppet(readPuppet(data))
     else if (type === 6) takeWeights(readWeights(data), model)
-    else if (type === 8) takeClay(readClay(data))
+    else if (type === 8) marks.clay = panel.clay = readClay(data)
     else if (type === 9) panel.setStates(readCommands(data))
     else if (type === 10) panel.setDevices(readDevices(data))
+    else if (type === 11) marks.wire = readWire(data)
     else if (type === 1) stale = !takeShape(readShape(data), model)
     else takeUpdate(readUpdate(data, model))
     if (stale) socket.close()
@@ -99,11 +101,6 @@ function open(model) {
 function takeSettings(settings) {
   panel.setSettings(settings)
   if (scene) Object.assign(scene, { radii: settings.radius_m, isByHands: ['clay', 'parts'].includes(settings.mode) })
-}
-
-function takeClay(clay) {
-  panel.clay = clay
-  if (scene) scene.contacts = clay.contacts
 }
 
 function takeWeights(weights, model) {

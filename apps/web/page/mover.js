@@ -1,6 +1,5 @@
 // The mouse places a hand, for gloves that have no tracker: the window's HandMover.
-// From a right press near a hand to its release, or from a finger that was held on one; the camera then
-// hears nothing of it.
+// From a right press near a hand, or a finger held on one, to its release. The camera hears nothing of it.
 const HAND_REACH = 60 // pixels from a joint
 const MAX_REACH = 2 // metres from the middle of the picture, on each axis: as far as arms reach
 const PUSH = 0.01, RADIANS_A_PIXEL = 0.35 * Math.PI / 180

@@ -1,5 +1,4 @@
-// The panel: sections as in the window, with their buttons, keys and figures; the search, the hints and the
-// status bar.
+// The panel, the search, the hints and the status bar, as in the window.
 // As in Blender: where one looks from, and where from with Ctrl.
 const RIGHT_ANGLE = Math.PI / 2
 const VIEWS = {

@@ -5,6 +5,7 @@ const SKIN = { colour: [0.33, 0.345, 0.37], gloss: 0.10, opacity: 0.64, rim_opac
 const SILENT = { colour: [0.22, 0.22, 0.22], gloss: 0, opacity: 0.25, rim_opacity: 0.85 }
 const BONE = { colour: [0.80, 0.78, 0.70], gloss: 0.10, opacity: 1, rim_opacity: 1 }
 const ARROW = { colour: [0.95, 0.52, 0.02], gloss: 0.20, opacity: 1, rim_opacity: 1 }
+const WIRE = { ...BONE, colour: [0.15, 0.15, 0.17], gloss: 0.30 }
 const REACH = { colour: [0.80, 0.40, 0.05], gloss: 0, opacity: 0, rim_opacity: 0.3, unlit: true }
 const CONTACTS = [[0.95, 0.80, 0.10], [0.95, 0.40, 0.02], [0.75, 0.04, 0.02]].map(colour => ({ ...BONE, colour }))
 const SOLID = 1 // in the stencil: a model, a bone, an arrow
@@ -25,16 +26,15 @@ function unitCapsule(rings = 8, sides = 20) {
 }
 
 class Scene {
-  // parts: what is shown, by name.
-  constructor(canvas, parts) {
+  // parts: what is shown, by name. marks: the clay's contacts, and a drawn wire.
+  constructor(canvas, parts, marks) {
     const gl = canvas.getContext('webgl2', { antialias: true, alpha: true, stencil: true, powerPreference: 'high-performance' })
     if (!gl) throw new Error('this browser shows no WebGL2')
     this.gl = gl
     this.canvas = canvas
     this.radii = [0, 0, 0, 0, 0]
-    this.parts = parts
+    Object.assign(this, { parts, marks })
     this.skins = null // of the left and of the right hand, when they have come
-    this.contacts = []
     const light = glsl('plain') + glsl('light')
     this.model = makeProgram(gl, glsl('deform') + glsl('model'), glsl('paint') + glsl('light'))
     this.skin = makeProgram(gl, glsl('skin'), light)
@@ -162,6 +162,7 @@ class Scene {
     this.shape.draw(this.model, part => this.paint.each(this.model, CLAY.colour, part))
     this.capsules(beside.bones, BONE)
     this.capsules(beside.arrows, ARROW)
+    this.capsules(beside.wire, WIRE)
     beside.contacts.forEach((some, at) => this.capsules(some, CONTACTS[at]))
     gl.stencilOp(gl.KEEP, gl.KEEP, gl.KEEP)
     beside.skins.forEach(skin => this.drawSkin(skin))
@@ -173,9 +174,13 @@ class Scene {
 
   // What there is beside the model, about the scene's origin.
   beside(update, holds) {
-    const parts = { bones: new Capsules(), arrows: new Capsules(), reaches: new Capsules(), contacts: CONTACTS.map(() => new Capsules()), skins: [] }
+    const parts = { bones: new Capsules(), arrows: new Capsules(), reaches: new Capsules(), wire: new Capsules(), contacts: CONTACTS.map(() => new Capsules()), skins: [] }
     if (!update) return parts
-    if (this.isByHands && this.parts.contact) this.addContacts(parts.contacts)
+    if (this.isByHands && this.parts.contact && this.marks.clay) this.addContacts(parts.contacts)
+    this.marks.wire.forEach((ends, at) => { // the newest, and what it has swept
+      const [from, to] = ends.map(end => minus(end, this.origin)), isNewest = at + 1 === this.marks.wire.length
+      parts[isNewest ? 'wire' : 'reaches'].add(from, to, 0.0015, 0.0015)
+    })
     update.hands.forEach((given, slot) => {
       if (!given) return
       const place = at => minus(at, this.origin)
@@ -196,7 +201,7 @@ class Scene {
   // The harder a hand presses, the larger and the redder.
   addContacts(capsules) {
     const longest = Math.min(0.3, Math.max(0.05, this.height))
-    for (const { place, strength } of this.contacts) {
+    for (const { place, strength } of this.marks.clay.contacts) {
       const at = minus(place, this.origin), radius = longest * (0.010 + 0.015 * strength)
       capsules[Math.min(CONTACTS.length - 1, Math.floor(CONTACTS.length * strength))].add(at, at, radius, radius)
     }

@@ -99,6 +99,12 @@ function readClay(buffer) {
   return { penetration, volume, first, contacts: from.some(count, () => ({ place: from.f32s(3), strength: from.f32() })) }
 }
 
+// The ends of a drawn wire, the newest last.
+function readWire(buffer) {
+  const from = new Reader(buffer, 2)
+  return from.some(from.u16(), () => [from.f32s(3), from.f32s(3)])
+}
+
 function readShape(buffer) {
   const from = new Reader(buffer, 2), loop = from.u16(), vertices = from.u32()
   return { loop, vertices, number: from.u64(), places: from.list(Float32Array, 3 * vertices) }
