@@ -178,8 +178,13 @@ def check(law, words):
 
 
 def begin(nendo, *options, glove="sim:sculpt?seed=7"):
+    return begin_any(nendo, "run", "--left", glove, "--right", glove, *options)
+
+
+def begin_any(*command):
+    """A command that serves the page. Returns the program, and the page's address."""
     program = subprocess.Popen(
-        [nendo, "run", "--left", glove, "--right", glove, "--web", "0", *options],
+        [*command, "--web", "0"],
         stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     line = program.stderr.readline()
     url = re.search(r"http://\S+", line) or sys.exit(f"no address in: {line}")

@@ -65,8 +65,9 @@ class Scene {
     if (!this.origin) this.findPlace(model) // a new connection does not move the picture
     this.offset = minus(times(model.origin, 1 / model.unitsPerMetre), this.origin)
   }
-  // The model is on the ground about the middle, as large as on the stage.
+  // The model is on the ground about the middle, as large as on the stage. There may be none, but hands alone.
   findPlace(model) {
+    if (model.vertices === 0) return Object.assign(this, { origin: [0, 0, 0], box: [], height: 0.3 })
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity]
     model.places.forEach((number, at) => {
       low[at % 3] = Math.min(low[at % 3], number)
