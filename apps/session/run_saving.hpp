@@ -59,7 +59,7 @@ private:
   RunRecorder& recorder_;
   int saved_ = 0;
   std::string chosen_;     ///< where the shape goes; empty: into the next free name
-  std::string saved_file_; ///< of the last saved shape
+  std::string saved_file_; ///< the file of the last saved shape
   std::uint32_t saves_ = 0;
   struct Version {
     std::uint32_t model = 0;

@@ -370,9 +370,8 @@ void CalibrationScreen::draw_banner(const viewer::SceneWindow& window) const {
   const float left = static_cast<float>(covered_px());
   const float free_width = ImGui::GetIO().DisplaySize.x - left;
   const float width = std::min(free_width - 2.0F * em(gap_em), em(52.0F));
-  ImGui::SetNextWindowPos(
-      ImVec2(left + free_width / 2.0F, window.above_px() + em(gap_em)),
-      ImGuiCond_Always, ImVec2(0.5F, 0.0F));
+  ImGui::SetNextWindowPos(ImVec2(left + free_width / 2.0F, window.above_px() + em(gap_em)),
+                          ImGuiCond_Always, ImVec2(0.5F, 0.0F));
   ImGui::SetNextWindowSize(ImVec2(width, 0.0F));
   ImGui::Begin("banner", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |

@@ -20,7 +20,7 @@ public:
   /// Draws one picture. Returns Go to the start when it is over. Errors: those of open_glove() and
   /// of the screen.
   Result<Wish> show(viewer::SceneWindow& window);
-  /// Returns the wearer for whom a run shall go on learning; empty: nobody.
+  /// Returns the wearer whose gloves a run continues to learn; empty: no wearer.
   const std::string& learns_for() const noexcept { return learns_for_; }
 
 private:

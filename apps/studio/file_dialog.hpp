@@ -40,7 +40,7 @@ private:
   std::filesystem::path folder_;
   std::vector<Entry> entries_;
   std::string trouble_; ///< why the folder cannot be read
-  std::string name_;    ///< of the file, as it was typed or clicked
+  std::string name_;    ///< the file's name, as it was typed or clicked
   bool begins_ = false;
   bool is_open_ = false;
 };

@@ -159,7 +159,9 @@ DeviceCard GloveBoard::card_of(Live& live) const {
   }
   const driver::GloveInfo& info = device.hand->glove->info();
   card.side = device.hand->side;
-  card.title = info.model + ", " + std::string(name_of(device.hand->side)) + " hand";
+  const std::string side(name_of(device.hand->side));
+  const bool says_side = info.model.find(side) != std::string::npos;
+  card.title = says_side ? info.model : info.model + ", " + side + " hand";
   card.is_simulated = info.kind == driver::SourceKind::simulated;
   const double age_s =
       live.hand ? to_seconds(HostClock::now() - live.hand->latest.arrival) : silent_after_s;

@@ -27,7 +27,7 @@ struct DeviceCard {
   std::string words;            ///< its state, as a sentence
   std::string remedy;           ///< what the user can do; empty: nothing is to do
   std::string spec;             ///< the argument for open_glove(); empty: not a glove
-  std::optional<Side> side{};   ///< of an open glove
+  std::optional<Side> side{};   ///< the side of an open glove
   bool is_uncalibrated = false; ///< a person wears it with an average hand's calibration
   bool is_simulated = false;
 };

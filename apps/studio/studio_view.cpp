@@ -94,7 +94,7 @@ void StudioView::report(const std::string& message) {
   parts_.shaping->report(message);
 }
 
-/// Goes on when the user's answer has been carried out.
+/// Continues when the user's answer has been carried out.
 void StudioView::follow_saving(const RunStatus& status, Asks& asks) {
   const bool is_saved = std::exchange(saves_, status.saves) != status.saves;
   if (is_saved) session::keep_recent_file(std::string(status.saved));

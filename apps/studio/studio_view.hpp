@@ -1,5 +1,5 @@
 #pragma once
-// A run in the studio's window: shaping, and beside it the timeline of what it has recorded.
+// A run in the studio's window: shaping, and beside it the timeline of its recordings.
 
 #include <memory>
 #include <optional>
@@ -53,7 +53,7 @@ private:
   Wish waiting_; ///< where the user goes once it is settled what becomes of the shape
   /// The shape is saved before: the dialog is open, or the run saves it, or has tried to.
   enum class Saving : std::uint8_t { none, asked, begun, tried } saving_ = Saving::none;
-  std::uint32_t saves_ = 0; ///< of the run so far
+  std::uint32_t saves_ = 0; ///< the number of saves of the run so far
   std::string recorded_;
   std::unique_ptr<TimelineScreen> timeline_;
   bool shows_timeline_ = false;

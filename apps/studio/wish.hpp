@@ -20,15 +20,15 @@ enum class Hands : std::uint8_t {
 /// A run with this model.
 struct Shape {
   std::string model{};  ///< a file; empty: the usual one of the mode or the puppet
-  std::string mode{};   ///< by its name (flow::mode_names); empty: the usual one
+  std::string mode{};   ///< the name of a flow::Mode; empty: the usual one
   std::string puppet{}; ///< a puppet's file, which may be new, or a shipped puppet; empty: none
   Hands hands = Hands::found;
-  std::string learns_for{}; ///< the wearer of whose gloves it goes on learning; empty: nobody
+  std::string learns_for{}; ///< the wearer whose gloves it continues to learn; empty: no wearer
 };
 /// Another screen.
 struct Go {
   Screen screen = Screen::start;
-  std::string glove{}; ///< for calibration: the GLOVE; empty: not chosen yet
+  std::string glove{}; ///< the GLOVE to calibrate; empty: not chosen yet
 };
 /// A model, a puppet, a recording or a timeline, by its name's ending.
 struct Open {
@@ -36,7 +36,7 @@ struct Open {
 };
 struct Quit {};
 
-/// std::monostate: to go on here.
+/// std::monostate: to stay here.
 using Wish = std::variant<std::monostate, Shape, Go, Open, Quit>;
 
 inline bool is_wish(const Wish& wish) noexcept {

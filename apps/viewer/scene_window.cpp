@@ -221,11 +221,12 @@ SceneWindow::~SceneWindow() {
 
 void SceneWindow::set_model(const deform::BlockLayout& layout,
                             const render::SceneBuilder& builder) {
+  if (!has_model()) framed_ = false;
   builder_ = builder;
   shown_.size = {};
   renderer_->set_model(layout, builder);
   parts_.ground = true;
-  if (std::exchange(kept_framed_, std::nullopt)) framed_ = false;
+  kept_framed_.reset();
 }
 
 void SceneWindow::clear_model(bool has_ground) {
@@ -233,7 +234,6 @@ void SceneWindow::clear_model(bool has_ground) {
   parts_.ground = has_ground;
   shown_.size = {};
   renderer_->clear_model();
-  framed_ = false;
 }
 
 std::vector<std::string> SceneWindow::take_dropped() {

@@ -45,8 +45,8 @@ public:
   SceneWindow& operator=(const SceneWindow&) = delete;
 
   void set_model(const deform::BlockLayout& layout, const render::SceneBuilder& builder);
-  /// Shows no model, as before the first set_model(), and chooses the camera anew. The scene is in
-  /// metres. With `has_ground`, y = 0 is the ground.
+  /// Shows no model, as before the first set_model(). The scene is in metres. With `has_ground`,
+  /// y = 0 is the ground. The next model gets a camera of its own.
   void clear_model(bool has_ground = false);
   bool has_model() const noexcept { return !builder_.corners().empty(); }
   void follow(const deform::BlockShape& shape) { renderer_->follow(shape); }

@@ -183,7 +183,7 @@ std::string modes_of(const flow::SettingText& setting) {
 /// Which values it has, by its kind.
 template <class T>
 std::string values_of(const flow::ChoiceSetting<T>& choice) {
-  return ", choices: " + js_text(choice.choices);
+  return ", choices: " + js_text(choice.choices());
 }
 std::string values_of(const flow::SwitchSetting&) {
   return ", choices: \"false or true\"";
@@ -247,7 +247,7 @@ std::string page_settings() {
       if (setting.option.empty() || is_of_fingers != of_fingers) return;
       const commands::Row* const row = commands::row_changing(setting.name);
       list += "\n  " + std::string(setting.name) + ": { label: " + js_text(setting.label) +
-              ", help: " + js_text(is_mode ? flow::modes_help : setting.help) +
+              ", help: " + js_text(setting.tip.empty() ? setting.help : setting.tip) +
               ", command: " + js_text(row != nullptr ? row->name : "") + modes_of(setting) +
               values_of(setting) + ", isOfFingers: " + (is_of_fingers ? "true" : "false");
       if (is_mode) {
