@@ -175,7 +175,7 @@ void merge_alike(std::vector<PoseAdvice>& found) {
       std::pair{": bend it more", "fingers: bend them more"},
       std::pair{": straighten it", "fingers: straighten them"}};
   for (const auto& [ending, text] : alike) {
-    const auto is_alike = [&](const PoseAdvice& advice) {
+    const auto is_alike = [&ending = ending](const PoseAdvice& advice) {
       return !advice.fingers[0] && advice.text.find(ending) != std::string::npos;
     };
     if (std::count_if(found.begin(), found.end(), is_alike) < 3) continue;

@@ -32,8 +32,10 @@ public:
   }
 
   std::optional<Shape> choose() override {
-    while (!is_over_ && !cli::stop_requested() && !next_)
-      show_one();
+    while (!is_over_ && !next_) {
+      show_one(); // once, whatever comes: there is a last picture
+      if (cli::stop_requested()) break;
+    }
     // Before its pictures go.
     if (!options_.view.screenshot.empty() && !next_) last_picture_ = window_->screenshot();
     start_.reset(); // closes its gloves, which the run opens

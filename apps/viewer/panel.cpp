@@ -67,6 +67,11 @@ double metres_of_pixel(const flow::Frame& frame, const SceneWindow& window,
   return way_in_picture(camera, place, 1.0, 0.0, window.scene_size().height).norm();
 }
 
+/// Returns whether the window is wide enough for a panel at its right.
+bool is_wide() {
+  return ImGui::GetIO().DisplaySize.x > em(60.0F);
+}
+
 /// Undoes, or does again, all steps up to the one with that number; 0: also the first of the list.
 void go_to_step(const flow::StepList& list, std::size_t at, Commands& commands) {
   for (std::size_t step = list.undoable + (list.in_hand ? 1 : 0); step > at; --step)
@@ -132,6 +137,7 @@ void LiveWindow::Panel::follow_settings(const flow::LoopSettings& current) {
 }
 
 void LiveWindow::Panel::history(const flow::Frame& frame, Commands& commands) {
+  if (!section("History", "The steps so far; a click goes to one.", true)) return;
   const flow::StepList& list = frame.steps;
   const std::size_t hidden =
       frame.undo_steps - std::min<std::uint64_t>(frame.undo_steps, list.undoable);
@@ -217,6 +223,7 @@ void LiveWindow::Panel::sections(const flow::Frame& frame, const Gauges& gauges,
     settings.draw(pending.now);
     masks(editor, now, commands);
   }
+  if (!is_wide()) history(frame, commands);
   if (section("Model", "Changes of the model itself, which undo reverts.", false))
     buttons_of(commands::Buttons::model, now, commands);
   if (!edits) draw_puppet();
@@ -244,7 +251,7 @@ void LiveWindow::Panel::draw(const flow::Frame& frame, const Gauges& gauges, Sce
   folded = ImGui::IsWindowCollapsed();
   if (open) sections(frame, gauges, window, editor, commands);
   ImGui::End();
-  if (!folded) draw_history(frame, top, commands);
+  if (!folded && is_wide()) draw_history(frame, top, commands);
 }
 
 /// At the window's right, where tools of any length leave it in sight.
@@ -257,7 +264,7 @@ void LiveWindow::Panel::draw_history(const flow::Frame& frame, float top, Comman
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav |
                    ImGuiWindowFlags_NoFocusOnAppearing);
-  if (section("History", "The steps so far; a click goes to one.", true)) history(frame, commands);
+  history(frame, commands);
   ImGui::End();
 }
 

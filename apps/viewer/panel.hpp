@@ -63,7 +63,8 @@ private:
   /// Draws the buttons of a group, two per line.
   void buttons_of(commands::Buttons group, const commands::Situation& now, Commands& commands);
   static void parts(SceneWindow& window);
-  /// Lists the history's steps, in a window of its own. A click undoes or redoes up to a step.
+  /// Lists the history's steps, where the window is wide in a panel of their own. A click undoes or
+  /// redoes up to a step.
   void draw_history(const flow::Frame& frame, float top, Commands& commands);
   void history(const flow::Frame& frame, Commands& commands);
   /// Controls symmetry, and masks of fingertips.

@@ -15,7 +15,8 @@ using namespace nendo::session;
 using namespace nendo::session::asking;
 
 TEST_SUITE("midway_take") {
-  TEST_CASE("a recording that begins in the middle of a run becomes a timeline of its first shape") {
+  TEST_CASE(
+      "a recording that begins in the middle of a run becomes a timeline of its first shape") {
     Run run;
     Asker asker(Changes{{}, {flow::SetRecording{true}}, {}, {}});
     asker.min_ticks = 60;
