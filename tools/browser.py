@@ -108,9 +108,9 @@ class Browser:
             part.scrollIntoView({{ block: 'nearest' }})
             const box = part.getBoundingClientRect(), at = [box.x + box.width / 2, box.y + box.height / 2]
             const top = document.elementFromPoint(...at)
-            return top && (part.contains(top) || top.contains(part)) ? at : null }})()""")
-        if not at:
-            raise RuntimeError(f"something is over {selector}")
+            return top && (part.contains(top) || top.contains(part)) ? at : `${{top && top.outerHTML.slice(0, 200)}} at ${{at}}` }})()""")
+        if isinstance(at, str):
+            raise RuntimeError(f"over {selector} is {at}")
         return at
 
     def click(self, selector, times=1):
