@@ -30,6 +30,9 @@ public:
   bool sets_pace() const noexcept override { return true; }
   bool stays_open() const noexcept override { return true; }
   bool has_settled_shape() const noexcept override { return is_settled_; }
+  const viewer::PictureTimes* picture_times() const noexcept override {
+    return parts_.shaping->picture_times();
+  }
   Result<void> end() override { return parts_.shaping->end(); }
 
   /// Returns where the user went when the run was left; nothing to wish: it ended by itself.

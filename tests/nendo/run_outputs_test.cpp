@@ -36,7 +36,9 @@ TEST_SUITE("run_outputs") {
     };
     for (const char* frames : {"2", "100000"}) {
       const auto picture = folder.path() / (std::string(frames) + ".png");
-      CHECK(run(frames, picture.string()).exit_code == 0);
+      const auto done = run(frames, picture.string());
+      CHECK(done.exit_code == 0);
+      CHECK(done.out.find("\n  picture  ") != std::string::npos); // how long they took
       CHECK(std::filesystem::file_size(picture) > 1000);
     }
     const auto gone = folder.path() / "gone";
