@@ -155,18 +155,17 @@ Result<TimelineOfTake> timeline_of_take(const MakeOptions& options) {
   recording::Setup setup = reader->setup();
   auto model = takes::recorded_model(options.take, setup, options.mesh);
   if (!model) return model.error();
-  const bool is_midway = !setup.loop->rest.empty() || !setup.loop->origins.empty();
   const std::string first =
       options.out.substr(0, options.out.size() - timeline::file_ending.size()) + ".first.ply";
-  if (const auto begun = takes::begin_with_first_shape(first, setup, *model); !begun)
-    return begun.error();
+  const auto is_midway = takes::begin_with_first_shape(first, setup, *model);
+  if (!is_midway) return is_midway.error();
   auto made = timeline::timeline_of_take(options.take, setup, model->mesh, *tolerance);
   if (!made) return made.error();
-  if (!options.mesh.empty() && !is_midway) {
+  if (!options.mesh.empty() && !*is_midway) {
     made->timeline.mesh = std::filesystem::absolute(options.mesh).string();
     made->timeline.mesh_sum = recording::sum_of(model->mesh.vertices);
   }
-  return TimelineOfTake{*std::move(made), std::move(model->mesh), is_midway ? first : ""};
+  return TimelineOfTake{*std::move(made), std::move(model->mesh), *is_midway ? first : ""};
 }
 
 int make_timeline(const MakeOptions& options) {

@@ -7,17 +7,13 @@ namespace nendo::edit {
 WindowEditing::WindowEditing(std::shared_ptr<viewer::SceneWindow> window,
                              takes::TimelineFrames& frames, const std::string& out)
     : window_(window), timeline_window_(std::move(window)),
-      session_(frames.player().timeline(), frames.model(0), out), first_model_(frames.model(0)),
-      first_layout_(frames.layout(0)) {
+      session_(frames.player().timeline(), frames.model(0), out), model_(frames.player().model(0)) {
   show_again();
 }
 
 void WindowEditing::show_again() {
   const double units_per_metre = session_.history().timeline().units_per_metre;
-  if (model_)
-    window_->set_model(model_->layout(), render::SceneBuilder(model_->mesh, units_per_metre));
-  else
-    window_->set_model(first_layout_, render::SceneBuilder(first_model_, units_per_metre));
+  window_->set_model(model_->layout(), render::SceneBuilder(model_->mesh, units_per_metre));
   before_.reset();
 }
 

@@ -32,9 +32,7 @@ private:
   std::shared_ptr<viewer::SceneWindow> window_;
   viewer::TimelineWindow timeline_window_;
   EditSession session_;
-  deform::Mesh first_model_;
-  deform::BlockLayout first_layout_;
-  std::shared_ptr<const flow::ModelVersion> model_; ///< that the window has; null: the first one
+  std::shared_ptr<const flow::ModelVersion> model_; ///< the one that the window shows
   std::optional<HostTime> before_;
   bool is_settled_ = false;
 };

@@ -202,10 +202,10 @@ Result<RecordedModel> recorded_model(const std::string& file, const recording::S
   return find_recorded_model(*setup.loop, named);
 }
 
-Result<void> begin_with_first_shape(const std::string& file, recording::Setup& setup,
+Result<bool> begin_with_first_shape(const std::string& file, recording::Setup& setup,
                                     RecordedModel& model) {
   recording::LoopSetup& loop = *setup.loop;
-  if (loop.rest.empty() && loop.origins.empty()) return {};
+  if (loop.rest.empty() && loop.origins.empty()) return false;
   if (!loop.rest.empty()) {
     const deform::BlockLayout layout(model.mesh.vertices);
     if (loop.rest.size() != layout.block_count())
@@ -213,7 +213,7 @@ Result<void> begin_with_first_shape(const std::string& file, recording::Setup& s
     layout.unpack(deform::BlockShape(loop.rest), model.mesh.vertices);
   }
   if (const auto written = deform::write_mesh(file, model.mesh, {}, model.up()); !written)
-    return written;
+    return written.error();
   auto read = read_models_silently(file, model.reading);
   if (!read) return read.error();
   model.mesh = std::move(read->mesh);
@@ -221,7 +221,7 @@ Result<void> begin_with_first_shape(const std::string& file, recording::Setup& s
   loop.mesh_sum = recording::sum_of(model.mesh.vertices);
   loop.rest.clear();
   loop.origins.clear();
-  return {};
+  return true;
 }
 
 void note_missing(const std::string& file) {

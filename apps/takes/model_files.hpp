@@ -52,10 +52,10 @@ Result<RecordedModel> recorded_model(const std::string& file, const recording::S
                                      const std::string& named = {});
 
 /// Writes the shape with which a recording began in the middle of a run into `file`, and makes it
-/// the setup's model, as if the run had begun with it. Returns the model as it is read from there.
-/// Does nothing to a recording that began with its model. Blocks. Errors: those of write_mesh() and
-/// read_mesh().
-Result<void> begin_with_first_shape(const std::string& file, recording::Setup& setup,
+/// the setup's model, as if the run had begun with it; `model` becomes the one read from there.
+/// Returns whether it did: not for a recording that began with its model. Blocks. Errors: those of
+/// write_mesh() and read_mesh().
+Result<bool> begin_with_first_shape(const std::string& file, recording::Setup& setup,
                                     RecordedModel& model);
 
 /// Prints a note on standard error that something is missing in the recording.

@@ -25,8 +25,7 @@ Id imgui_texture(unsigned texture) {
 
 } // namespace
 
-CardPicture::CardPicture(const render::Image& image)
-    : ratio_(static_cast<float>(image.size().width) / static_cast<float>(image.size().height)) {
+CardPicture::CardPicture(const render::Image& image) {
   glGenTextures(1, &texture_);
   glBindTexture(GL_TEXTURE_2D, texture_);
   for (const int filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})

@@ -16,11 +16,9 @@ public:
   CardPicture& operator=(const CardPicture&) = delete;
 
   unsigned texture() const noexcept { return texture_; } ///< OpenGL's name
-  float width_of_height() const noexcept { return ratio_; }
 
 private:
   unsigned texture_ = 0;
-  float ratio_ = 1.0F;
 };
 
 /// A button `width` pixels wide with a picture, and its name below. Null: an empty frame of

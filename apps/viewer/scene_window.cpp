@@ -249,10 +249,6 @@ float SceneWindow::above_px() const {
   return em(bar_em_);
 }
 
-void SceneWindow::set_title(const std::string& title) {
-  glfwSetWindowTitle(window_, title.c_str());
-}
-
 void SceneWindow::begin_picture(const render::SceneFrame& scene_frame, bool is_whole) {
   begun_ = HostClock::now();
   glfwPollEvents();

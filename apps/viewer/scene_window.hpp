@@ -90,7 +90,6 @@ public:
   void set_bar(std::function<void()> draw, float height_em);
   /// Returns the height of the bar in pixels, which panels leave free.
   float above_px() const;
-  void set_title(const std::string& title);
   /// Reserves pixels at the bottom of the window, where the scene is not drawn.
   void leave_below(int pixels) noexcept { below_ = pixels; }
   /// Sets the covered pixels at the left of the window. The scene extends under them, but is
