@@ -90,10 +90,15 @@ void GloveBoard::add(std::string spec, const driver::DeviceCandidate& candidate)
   device->error = std::move(error);
 }
 
+/// An unplugged glove is closed, so that its port is free when it comes again.
 void GloveBoard::remove(const driver::DeviceCandidate& candidate) {
+  std::vector<gloves::OpenHand> closed; // without the lock, because closing waits for a thread
   const std::lock_guard lock(mutex_);
-  for (const auto& device : found_)
-    if (device->candidate.device == candidate.device) device->is_gone = true;
+  for (const auto& device : found_) {
+    if (device->candidate.device != candidate.device || device->is_gone) continue;
+    device->is_gone = true;
+    if (device->hand) closed.push_back(*std::exchange(device->hand, std::nullopt));
+  }
 }
 
 void GloveBoard::take_found() {
