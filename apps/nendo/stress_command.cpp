@@ -81,9 +81,9 @@ int run(const stress::StressArguments& arguments) {
   cli::install_stop_signals();
   std::unique_ptr<session::Observer> window;
   if (arguments.view) {
-    auto opened = session::open_live_view({}, options->run);
+    const auto opened = session::open_window({});
     if (!opened) return cli::report(opened.error());
-    window = *std::move(opened);
+    window = session::live_view({}, options->run, *opened);
   }
   const auto outcome =
       stress::run_stress(*options, model->mesh, progress_for(*options), window.get());

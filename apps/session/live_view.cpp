@@ -95,20 +95,20 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<WindowView>> open_live_view(const ViewOptions& options,
-                                                   const RunOptions& run,
-                                                   std::shared_ptr<SceneWindow> window) {
-  std::unique_ptr<LiveWindow> live;
-  if (window) {
-    live = std::make_unique<LiveWindow>(std::move(window));
-  } else {
-    WindowLook look;
-    look.theme = theme_named(options.theme);
-    auto opened = LiveWindow::open("Nendo", look);
-    if (!opened) return opened.error();
-    live = *std::move(opened);
-  }
-  return std::unique_ptr<WindowView>(std::make_unique<LiveView>(std::move(live), options, run));
+Result<std::shared_ptr<SceneWindow>> open_window(const ViewOptions& options) {
+  WindowLook look;
+  look.theme = theme_named(options.theme);
+  auto window = SceneWindow::open(
+      "Nendo", look,
+      "on a box without a screen `nendo run --web 8080` shows the run in a browser, and `nendo "
+      "picture` and `nendo run --picture` draw files");
+  if (!window) return window.error();
+  return std::shared_ptr<SceneWindow>(*std::move(window));
+}
+
+std::unique_ptr<WindowView> live_view(const ViewOptions& options, const RunOptions& run,
+                                      std::shared_ptr<SceneWindow> window) {
+  return std::make_unique<LiveView>(std::make_unique<LiveWindow>(std::move(window)), options, run);
 }
 
 } // namespace nendo::session
@@ -117,12 +117,16 @@ Result<std::unique_ptr<WindowView>> open_live_view(const ViewOptions& options,
 
 namespace nendo::session {
 
-Result<std::unique_ptr<WindowView>> open_live_view(const ViewOptions&, const RunOptions&,
-                                                   std::shared_ptr<viewer::SceneWindow>) {
+Result<std::shared_ptr<viewer::SceneWindow>> open_window(const ViewOptions&) {
   return Error{Errc::failed, "this nendo was built without a window; install libglfw3-dev, "
                              "libimgui-dev and libgl-dev and build it again, use a "
                              "browser with `nendo run --web 8080`, or draw files with "
                              "`nendo picture`"};
+}
+
+std::unique_ptr<WindowView> live_view(const ViewOptions&, const RunOptions&,
+                                      std::shared_ptr<viewer::SceneWindow>) {
+  return nullptr; // there is no window for it
 }
 
 } // namespace nendo::session

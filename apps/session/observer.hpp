@@ -2,7 +2,6 @@
 // An observer watches a run from the main thread and may send commands: the keys, a window, a
 // browser.
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -20,6 +19,8 @@
 
 namespace nendo::session {
 
+class RunSaving;
+
 struct RunStatus {
   const flow::Frame& frame;        ///< the latest
   const flow::ModelVersion& model; ///< the model of that frame
@@ -28,9 +29,7 @@ struct RunStatus {
   commands::RunFacts facts{};
   /// The frame's puppet; null: none.
   const std::shared_ptr<const puppet::Rig>& puppet;
-  bool modified = false;       ///< the shape differs from the loaded and from the last saved one
-  std::string_view saved{};    ///< the file of the last saved shape; empty: none
-  std::uint32_t saves = 0;     ///< how often the shape was saved
+  RunSaving* saving = nullptr; ///< not null in a run
   std::string_view recorded{}; ///< the file of the last complete recording; empty: none
 
   commands::Situation situation() const noexcept { return {frame, facts}; }

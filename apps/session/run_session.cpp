@@ -225,16 +225,10 @@ private:
     commands_.follow_frame(frame);
     follow_stuck(frame);
     follow_wrists(frame);
-    const RunStatus status{frame,
-                           model,
-                           fresh,
-                           devices_,
-                           facts(),
-                           placed_.loop->changes().puppet(frame.puppet),
-                           saving_.is_modified(frame),
-                           saving_.saved(),
-                           saving_.saves(),
-                           recorder_.last_file()};
+    const RunStatus status{frame,    model,
+                           fresh,    devices_,
+                           facts(),  placed_.loop->changes().puppet(frame.puppet),
+                           &saving_, recorder_.last_file()};
     asks_.clear();
     for (Observer* observer : observers_)
       observer->update(status, asks_);

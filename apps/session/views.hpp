@@ -31,12 +31,12 @@ public:
   virtual void show_again(const RunStatus& status) = 0;
 };
 
-/// Shows the run in `window`, or if that is null, opens one. Main thread, also for all calls of the
-/// window. Errors: failed (no screen, no OpenGL, or built without the view); the message has a
-/// remedy.
-Result<std::unique_ptr<WindowView>>
-open_live_view(const ViewOptions& options, const RunOptions& run,
-               std::shared_ptr<viewer::SceneWindow> window = nullptr);
+/// Opens a window. Main thread, also for all calls of the window. Errors: failed (no screen, no
+/// OpenGL, or built without windows); the message has a remedy.
+Result<std::shared_ptr<viewer::SceneWindow>> open_window(const ViewOptions& options);
+/// Shows the run in `window`, not null.
+std::unique_ptr<WindowView> live_view(const ViewOptions& options, const RunOptions& run,
+                                      std::shared_ptr<viewer::SceneWindow> window);
 
 /// Receives every frame in the tick, and observes the run on the main thread.
 class BrowserView : public Sink, public Observer {};

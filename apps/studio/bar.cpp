@@ -85,12 +85,14 @@ void Bar::ask_what_to_open() {
 }
 
 void Bar::draw_file_menu() {
-  if (viewer::button("File")) ImGui::OpenPopup("file");
+  if (viewer::button("File")) {
+    ImGui::OpenPopup("file");
+    recent_ = session::recent_files();
+  }
   if (!ImGui::BeginPopup("file")) return;
   if (item("Open...", "Ctrl O")) ask_what_to_open();
-  const auto recent = session::recent_files();
-  if (ImGui::BeginMenu("Open recent", !recent.empty())) {
-    for (const std::string& file : recent)
+  if (ImGui::BeginMenu("Open recent", !recent_.empty())) {
+    for (const std::string& file : recent_)
       if (item(printable(file).c_str(), "")) wish_ = Open{file};
     ImGui::EndMenu();
   }
@@ -106,12 +108,7 @@ void Bar::draw_tabs() {
   for (const Tab& tab : tabs) {
     ImGui::SameLine();
     const bool is_now = tab.screen == state_.now;
-    if (is_now) {
-      ImGui::PushStyleColor(ImGuiCol_Button, viewer::accent());
-      ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0F, 1.0F, 1.0F, 1.0F));
-    }
-    if (viewer::button(tab.name) && !is_now) wish_ = Go{tab.screen};
-    if (is_now) ImGui::PopStyleColor(2);
+    if (viewer::button(tab.name, 0.0F, true, is_now) && !is_now) wish_ = Go{tab.screen};
     viewer::show_text(tab.help);
   }
 }

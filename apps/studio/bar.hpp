@@ -68,6 +68,7 @@ private:
   std::string question_;
   bool question_begins_ = false;
   std::string error_;
+  std::vector<std::string> recent_; ///< the files of the menu, since it was opened
   Wish wish_;
   std::optional<std::string> save_;
   std::optional<Answer> answer_;

@@ -14,6 +14,7 @@
 #include "studio/calibration_screen.hpp"
 #include "viewer/command_widgets.hpp"
 #include "viewer/controls.hpp"
+#include "viewer/pointing.hpp"
 #include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
 
@@ -53,11 +54,7 @@ void faint(std::string_view text) {
 
 /// A button that is the next thing to press.
 bool main_button(std::string_view name, bool is_possible = true) {
-  ImGui::PushStyleColor(ImGuiCol_Button, viewer::accent());
-  ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0F, 1.0F, 1.0F, 1.0F));
-  const bool is_pressed = button(name, ImGui::GetContentRegionAvail().x, is_possible);
-  ImGui::PopStyleColor(2);
-  return is_pressed;
+  return button(name, ImGui::GetContentRegionAvail().x, is_possible, true);
 }
 
 /// Continues the line if the next button fits into it.
@@ -123,12 +120,19 @@ ImVec4 screen_colour(Certainty certainty) {
   return {encoded(colour.x()), encoded(colour.y()), encoded(colour.z()), 1.0F};
 }
 
+/// The pixel of a place about which the camera turns, and which so is before it.
+ImVec2 pixel(const viewer::SceneWindow& window, const Eigen::Vector3d& place_m) {
+  const auto at = viewer::pixel_of(window.camera(), place_m, window.scene_size())
+                      .value_or(Eigen::Vector2d::Zero());
+  return {static_cast<float>(at.x()), static_cast<float>(at.y())};
+}
+
 void centred_words(const viewer::SceneWindow& window, const Eigen::Vector3d& place_m,
                    const char* words) {
-  const Eigen::Vector2f at = pixel_of(window.camera(), window.scene_size(), place_m).cast<float>();
+  const ImVec2 at = pixel(window, place_m);
   const float width = ImGui::CalcTextSize(words).x;
-  ImGui::GetBackgroundDrawList()->AddText({at.x() - width / 2.0F, at.y()},
-                                          IM_COL32(45, 50, 56, 255), words);
+  ImGui::GetBackgroundDrawList()->AddText({at.x - width / 2.0F, at.y}, IM_COL32(45, 50, 56, 255),
+                                          words);
 }
 
 } // namespace
@@ -139,15 +143,9 @@ int CalibrationScreen::covered_px() const {
 
 void CalibrationScreen::kind_buttons() {
   for (const KindRow& row : kinds) {
-    const bool is_chosen = request_.kind == row.kind;
     const bool is_possible = row.kind != CalibrationKind::touch_up || touch_up_refusal_.empty();
-    if (is_chosen) {
-      ImGui::PushStyleColor(ImGuiCol_Button, viewer::accent());
-      ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0F, 1.0F, 1.0F, 1.0F));
-    }
-    const bool is_pressed = button(row.name, ImGui::GetContentRegionAvail().x, is_possible);
-    if (is_chosen) ImGui::PopStyleColor(2);
-    if (is_pressed) {
+    if (button(row.name, ImGui::GetContentRegionAvail().x, is_possible,
+               request_.kind == row.kind)) {
       request_.kind = row.kind;
       follow_name();
     }
@@ -419,12 +417,9 @@ void CalibrationScreen::draw_ring(const viewer::SceneWindow& window) const {
   if (guided_->is_ending()) return;
   const float share =
       static_cast<float>(guided_->has_begun() ? guide_->capture().progress() : shown_ranges());
-  const auto pixel = [&](const Eigen::Vector3d& place_m) -> Eigen::Vector2f {
-    return pixel_of(window.camera(), window.scene_size(), place_m).cast<float>();
-  };
-  const Eigen::Vector2f wrist = pixel(Eigen::Vector3d::Zero());
-  const ImVec2 middle(wrist.x(), wrist.y());
-  const float radius = (pixel({0.0, 0.058, 0.0}) - wrist).norm(), width = radius / 5.0F;
+  const ImVec2 middle = pixel(window, Eigen::Vector3d::Zero());
+  const ImVec2 edge = pixel(window, {0.0, 0.058, 0.0});
+  const float radius = std::hypot(edge.x - middle.x, edge.y - middle.y), width = radius / 5.0F;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   constexpr int segments = 96;
   list.AddCircle(middle, radius, IM_COL32(90, 98, 106, 70), segments, width);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "viewer/pointing.hpp"
+
 namespace nendo::studio {
 namespace {
 
@@ -218,14 +220,6 @@ std::vector<Surface> HandPainter::report(const hand::HandPose& pose,
   return surfaces;
 }
 
-Eigen::Vector2d pixel_of(const render::Camera& camera, render::Size size,
-                         const Vector3d& place_m) noexcept {
-  const Eigen::Vector4d clip =
-      camera.projection(1.0 * size.width / size.height) * place_m.homogeneous();
-  return {(clip.x() / clip.w() + 1.0) / 2.0 * size.width,
-          (1.0 - clip.y() / clip.w()) / 2.0 * size.height};
-}
-
 std::optional<Sensor> sensor_at(const Eigen::Vector2d& pixel, const render::Camera& camera,
                                 render::Size size, const hand::HandPose& pose, SensorMask sensors) {
   const Vector3d aside = static_cast<double>(ball_radius_m) * camera.axes().row(0).transpose();
@@ -233,9 +227,10 @@ std::optional<Sensor> sensor_at(const Eigen::Vector2d& pixel, const render::Came
   double least = 1.0; // of a ball's radius
   for (const Sensor sensor : sensors) {
     const Vector3d place = place_of(sensor, pose);
-    const Eigen::Vector2d middle = pixel_of(camera, size, place);
-    const double radius = (pixel_of(camera, size, place + aside) - middle).norm();
-    const double share = (pixel - middle).norm() / radius;
+    const auto middle = viewer::pixel_of(camera, place, size);
+    const auto edge = viewer::pixel_of(camera, place + aside, size);
+    if (!middle || !edge) continue;
+    const double share = (pixel - *middle).norm() / (*edge - *middle).norm();
     if (share >= least) continue;
     least = share;
     nearest = sensor;

@@ -52,9 +52,6 @@ private:
   render::HandSkin skin_;
 };
 
-/// Returns the pixels of a place in the scene, from the window's top left corner.
-Eigen::Vector2d pixel_of(const render::Camera& camera, render::Size size,
-                         const Eigen::Vector3d& place_m) noexcept;
 /// Returns the sensor whose ball in HandPainter::report() is at those pixels.
 std::optional<Sensor> sensor_at(const Eigen::Vector2d& pixel, const render::Camera& camera,
                                 render::Size size, const hand::HandPose& pose, SensorMask sensors);

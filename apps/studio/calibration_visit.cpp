@@ -3,32 +3,12 @@
 #include <chrono>
 #include <utility>
 
-#include <imgui.h>
-
 #include <nendo/base/text.hpp>
 
 #include "gloves/open_hand.hpp"
+#include "studio/waiting.hpp"
 
 namespace nendo::studio {
-namespace {
-
-/// A picture that says what the user waits for.
-void show_waiting(viewer::SceneWindow& window, const std::string& what) {
-  window.leave_left(0);
-  window.leave_below(0);
-  window.begin_picture({}, false);
-  const ImVec2 all = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({all.x / 2.0F, all.y / 2.0F}, ImGuiCond_Always, {0.5F, 0.5F});
-  ImGui::Begin("waiting", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::Text("Opening %s", printable(what).c_str());
-  ImGui::End();
-  window.end_picture();
-}
-
-} // namespace
-
 CalibrationVisit::CalibrationVisit(viewer::SceneWindow& window, std::string glove)
     : name_(std::move(glove)), opening_(std::async(std::launch::async, [name = name_] {
         return driver::open_glove(name, std::nullopt, gloves::glove_context());
@@ -41,7 +21,7 @@ CalibrationVisit::~CalibrationVisit() = default;
 Result<Wish> CalibrationVisit::show(viewer::SceneWindow& window) {
   if (!screen_) {
     if (opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
-      show_waiting(window, name_);
+      show_waiting(window, "Opening " + printable(name_));
       return Wish{};
     }
     auto opened = opening_.get();

@@ -75,8 +75,10 @@ std::vector<std::string> StartScreen::files_of(const std::vector<Model>& models)
 
 StartScreen::StartScreen(viewer::SceneWindow& window, const StartOptions& options)
     : models_(models()), gallery_(files_of(models_)), board_(options.gloves, options.calibration),
-      simulated_({"sim:wave?hand=left", "sim:wave?hand=right&seed=2"}, {}),
-      are_gloves_named_(!options.gloves.empty()), chosen_(models_.size()) {
+      chosen_(models_.size()) {
+  if (options.gloves.empty())
+    simulated_.emplace(std::vector<std::string>{"sim:wave?hand=left", "sim:wave?hand=right&seed=2"},
+                       gloves::CalibrationOptions{});
   window.clear_model(true);
   // About both hands, whether they are there or not.
   window.frame(
@@ -173,7 +175,7 @@ void StartScreen::draw_device(const DeviceCard& card, Wish& wish) {
 }
 
 void StartScreen::draw_choice_of_hands() {
-  const bool any = board_.has_gloves() || are_gloves_named_;
+  const bool any = board_.has_gloves() || !simulated_;
   const std::array<std::string_view, 3> names{any ? "the gloves" : "gloves, if one comes",
                                               "simulated, moving", "simulated, still"};
   viewer::choice_field("Hands", names, hands_);
@@ -212,9 +214,9 @@ std::string StartScreen::found_glove() const {
 Wish StartScreen::show(viewer::SceneWindow& window) {
   Wish wish;
   board_.update();
-  simulated_.update();
+  if (simulated_) simulated_->update();
   scene_frame_.hands = {};
-  if (!board_.has_gloves() && !are_gloves_named_) simulated_.pose(scene_frame_);
+  if (simulated_ && !board_.has_gloves()) simulated_->pose(scene_frame_);
   board_.pose(scene_frame_);
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   window.leave_left(static_cast<int>(panel_part * all.x));

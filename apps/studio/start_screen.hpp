@@ -3,6 +3,7 @@
 // One click starts. Main thread.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,9 +56,8 @@ private:
   ModelGallery gallery_;
   std::vector<std::unique_ptr<viewer::CardPicture>> modes_; ///< their pictures; null: unreadable
   GloveBoard board_;
-  GloveBoard simulated_; ///< the hands that are shown without gloves
-  bool are_gloves_named_ = false;
-  std::size_t chosen_; ///< index of models_; as many: none is chosen
+  std::optional<GloveBoard> simulated_; ///< the hands shown without gloves; none: gloves are named
+  std::size_t chosen_;                  ///< index of models_; as many: none is chosen
   std::size_t hands_ = 0;
   render::SceneFrame scene_frame_;
 };

@@ -13,21 +13,18 @@
 #include "studio/calibration_visit.hpp"
 #include "studio/start_screen.hpp"
 #include "studio/studio_view.hpp"
-#include "studio/timeline_screen.hpp"
+#include "studio/timeline_tab.hpp"
 
 namespace nendo::studio {
 namespace {
 
-bool is_of_timeline(const std::string& file) {
-  return file.ends_with(".nendo") || file.ends_with(".timeline.toml");
-}
-
 class WindowStudio final : public Studio {
 public:
   WindowStudio(std::shared_ptr<viewer::SceneWindow> window, StudioOptions options)
-      : window_(std::move(window)), options_(std::move(options)), bar_(*window_) {
+      : window_(std::move(window)), options_(std::move(options)), bar_(*window_),
+        timeline_(window_, bar_) {
     if (!options_.timeline) return;
-    timeline_ = std::make_unique<TimelineScreen>(window_, *options_.timeline);
+    timeline_.open(*options_.timeline);
     screen_ = Screen::timeline;
   }
 
@@ -44,11 +41,10 @@ public:
     return std::exchange(next_, std::nullopt);
   }
 
-  Result<session::Observer*> observe(const session::RunOptions& run, bool asks_to_save) override {
-    auto view = session::open_live_view(options_.view, run, window_);
-    if (!view) return view.error();
-    view_ = std::make_unique<StudioView>(StudioView::Parts{window_, bar_, *std::move(view)},
-                                         cli::short_name(run.mesh), asks_to_save);
+  session::Observer* observe(const session::RunOptions& run, bool asks_to_save) override {
+    view_ = std::make_unique<StudioView>(
+        StudioView::Parts{bar_, timeline_, session::live_view(options_.view, run, window_)},
+        cli::short_name(run.mesh), asks_to_save);
     return view_.get();
   }
 
@@ -71,23 +67,23 @@ public:
 
 private:
   void show_one() {
-    const bool is_timeline = screen_ == Screen::timeline && timeline_;
-    bar_.set({screen_, is_timeline ? timeline_->file() : "",
-              is_timeline && timeline_->is_modified(), false});
-    const Wish wish = is_timeline    ? show_timeline()
-                      : calibration_ ? show_calibration()
-                                     : show_start();
-    const Wish of_bar = bar_.take_wish();
-    follow(is_wish(of_bar) ? of_bar : wish);
-    if (window_->take_close_request()) is_over_ = true;
+    const bool is_timeline = screen_ == Screen::timeline;
+    bar_.set({screen_, is_timeline ? timeline_.screen()->file() : "",
+              is_timeline && timeline_.is_modified(), false});
+    follow(is_timeline ? show_timeline() : calibration_ ? show_calibration() : show_start());
+    follow(bar_.take_wish());
+    follow(timeline_.take_settled());
+    if (window_->take_close_request()) follow(Quit{});
     if (is_complete()) ++shown_;
     if (options_.view.frames > 0 && shown_ >= options_.view.frames) is_over_ = true;
   }
 
   /// Only pictures on which nothing is missing count.
   bool is_complete() {
-    if (timeline_ && screen_ == Screen::timeline)
-      return timeline_->editing() != nullptr && timeline_->editing()->is_settled();
+    if (screen_ == Screen::timeline) {
+      edit::WindowEditing* const editing = timeline_.screen()->editing();
+      return editing != nullptr && editing->is_settled();
+    }
     return start_ && start_->is_complete();
   }
 
@@ -99,11 +95,12 @@ private:
   }
 
   Wish show_timeline() {
-    const auto wish = timeline_->show();
-    if (wish) return *wish;
-    bar_.show_error(wish.error().message);
-    timeline_.reset();
-    return Go{Screen::start};
+    const auto wish = timeline_.screen()->show();
+    if (wish && !std::holds_alternative<Quit>(*wish)) return *wish;
+    if (!wish) bar_.show_error(wish.error().message);
+    timeline_.close(); // whose window has asked about its edits
+    screen_ = Screen::start;
+    return wish ? *wish : Wish{};
   }
 
   Wish show_calibration() {
@@ -129,14 +126,14 @@ private:
     calibration_ = std::make_unique<CalibrationVisit>(*window_, glove);
   }
 
-  void open_timeline(const std::string& file) {
+  void show_timeline_tab() {
     start_.reset();
     calibration_.reset();
-    timeline_ = std::make_unique<TimelineScreen>(window_, file);
     screen_ = Screen::timeline;
   }
 
   void follow(const Wish& wish) {
+    if (!timeline_.lets(wish)) return;
     if (const auto* const shape = std::get_if<Shape>(&wish)) next_ = *shape;
     if (const auto* const there = std::get_if<Go>(&wish)) go(*there);
     if (const auto* const file = std::get_if<Open>(&wish)) open(file->file);
@@ -146,7 +143,11 @@ private:
   void go(const Go& there) {
     if (there.screen == Screen::shaping) next_ = Shape{};
     if (there.screen == Screen::puppet) next_ = Shape{{}, {}, "face"};
-    if (there.screen == Screen::timeline) open_timeline("");
+    if (there.screen == Screen::timeline) {
+      if (timeline_.screen() == nullptr) timeline_.open("");
+      timeline_.screen()->show_again();
+      show_timeline_tab();
+    }
     if (there.screen == Screen::calibration) calibrate(there.glove);
     if (there.screen != Screen::start) return;
     calibration_.reset();
@@ -156,7 +157,10 @@ private:
   void open(const std::string& file) {
     if (file.empty()) return bar_.ask_what_to_open();
     session::keep_recent_file(file);
-    if (is_of_timeline(file)) return open_timeline(file);
+    if (opens_in_timeline(file)) {
+      timeline_.open(file);
+      return show_timeline_tab();
+    }
     if (file.ends_with(".toml"))
       next_ = Shape{{}, {}, file};
     else
@@ -167,7 +171,7 @@ private:
   StudioOptions options_;
   Bar bar_;
   std::unique_ptr<StartScreen> start_;
-  std::unique_ptr<TimelineScreen> timeline_;
+  TimelineTab timeline_;
   std::unique_ptr<CalibrationVisit> calibration_;
   std::unique_ptr<StudioView> view_;
   Screen screen_ = Screen::start;
@@ -181,14 +185,9 @@ private:
 } // namespace
 
 Result<std::unique_ptr<Studio>> open_studio(const StudioOptions& options) {
-  viewer::WindowLook look;
-  look.theme = viewer::theme_named(options.view.theme);
-  auto window = viewer::SceneWindow::open(
-      "Nendo", look,
-      "on a box without a screen `nendo run --web 8080` shows a run in a browser, and `nendo "
-      "picture` and `nendo run --picture` draw files");
+  const auto window = session::open_window(options.view);
   if (!window) return window.error();
-  return std::unique_ptr<Studio>(std::make_unique<WindowStudio>(*std::move(window), options));
+  return std::unique_ptr<Studio>(std::make_unique<WindowStudio>(*window, options));
 }
 
 } // namespace nendo::studio
@@ -197,11 +196,8 @@ Result<std::unique_ptr<Studio>> open_studio(const StudioOptions& options) {
 
 namespace nendo::studio {
 
-Result<std::unique_ptr<Studio>> open_studio(const StudioOptions&) {
-  return Error{Errc::failed, "this nendo was built without a window; install libglfw3-dev, "
-                             "libimgui-dev and libgl-dev and build it again, use a "
-                             "browser with `nendo run --web 8080`, or draw files with "
-                             "`nendo picture`"};
+Result<std::unique_ptr<Studio>> open_studio(const StudioOptions& options) {
+  return session::open_window(options.view).error();
 }
 
 } // namespace nendo::studio

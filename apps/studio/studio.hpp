@@ -32,7 +32,7 @@ public:
   virtual std::optional<Shape> choose() = 0;
   /// Begins to show a run, as an observer, which is valid until the next call. `asks_to_save`: the
   /// user, and not the end of the run, decides where its shape goes.
-  virtual Result<session::Observer*> observe(const session::RunOptions& run, bool asks_to_save) = 0;
+  virtual session::Observer* observe(const session::RunOptions& run, bool asks_to_save) = 0;
   /// To be called after the run: returns whether the studio continues, with choose().
   virtual bool goes_on() = 0;
   /// Shows in the next screen that something failed.

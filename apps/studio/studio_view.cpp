@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "session/kept_state.hpp"
+#include "session/run_saving.hpp"
 #include "viewer/live_window.hpp"
 #include "viewer/puppet_editor.hpp"
 
@@ -31,16 +32,17 @@ void StudioView::loop_begins(const session::LoopStart& start) {
 }
 
 Screen StudioView::screen() const noexcept {
-  if (shows_timeline_) return Screen::timeline;
   const viewer::PuppetEditor& editor = parts_.shaping->window().editor();
   return editor.is_on() && !editor.paints_masks() ? Screen::puppet : Screen::shaping;
 }
 
 void StudioView::update(const RunStatus& status, Asks& asks) {
-  const bool in_timeline = shows_timeline_ && timeline_ && !timeline_->file().empty();
-  parts_.bar.set({screen(), in_timeline ? timeline_->file() : file_,
-                  in_timeline ? timeline_->is_modified() : status.modified, !shows_timeline_});
   follow_recording(status);
+  if (shows_timeline_)
+    parts_.bar.set(
+        {Screen::timeline, timeline().screen()->file(), timeline().is_modified(), false});
+  else
+    parts_.bar.set({screen(), file_, status.saving->is_modified(status.frame), true});
   show_screen(status, asks);
   if (const auto file = parts_.bar.take_save()) {
     if (saving_ == Saving::asked) saving_ = Saving::begun;
@@ -49,8 +51,8 @@ void StudioView::update(const RunStatus& status, Asks& asks) {
     else
       asks.emplace_back(session::SaveShapeAs{*file});
   }
-  const Wish wish = parts_.bar.take_wish();
-  if (is_wish(wish)) go(wish, status, asks);
+  for (const Wish& wish : {parts_.bar.take_wish(), timeline().take_settled()})
+    if (is_wish(wish)) go(wish, status, asks);
   follow_saving(status, asks);
 }
 
@@ -65,26 +67,23 @@ void StudioView::show_screen(const RunStatus& status, Asks& asks) {
 }
 
 void StudioView::show_timeline(const RunStatus& status, Asks& asks) {
-  const auto wish = timeline_->show();
-  if (!wish) {
-    parts_.bar.show_error(wish.error().message);
-    timeline_.reset();
+  const auto wish = timeline().screen()->show();
+  if (wish && !is_wish(*wish)) return;
+  const bool quits = wish && std::holds_alternative<Quit>(*wish);
+  if (!wish) parts_.bar.show_error(wish.error().message);
+  if (!wish || quits) { // its window has asked about its edits
+    timeline().close();
     go_to(Screen::shaping, status, asks);
-  } else if (is_wish(*wish)) {
-    go(*wish, status, asks);
   }
+  if (wish) go(*wish, status, asks);
 }
 
+/// The tab opens the new recording, unless edits of another one are unsaved.
 void StudioView::follow_recording(const RunStatus& status) {
   if (status.recorded == recorded_) return;
   recorded_ = status.recorded;
   session::keep_recent_file(recorded_);
-  if (std::exchange(opens_recording_, false))
-    timeline_ = std::make_unique<TimelineScreen>(parts_.window, recorded_);
-  else if (!timeline_ || !timeline_->is_modified())
-    timeline_.reset(); // the tab opens the new one
-  if (shows_timeline_ && !timeline_)
-    timeline_ = std::make_unique<TimelineScreen>(parts_.window, recorded_);
+  if (!timeline().is_modified()) timeline().open(recorded_);
   report("recorded in " + recorded_ + "; the tab Timeline opens it");
 }
 
@@ -96,8 +95,9 @@ void StudioView::report(const std::string& message) {
 
 /// Continues when the user's answer has been carried out.
 void StudioView::follow_saving(const RunStatus& status, Asks& asks) {
-  const bool is_saved = std::exchange(saves_, status.saves) != status.saves;
-  if (is_saved) session::keep_recent_file(std::string(status.saved));
+  const std::string& saved = status.saving->saved();
+  const bool is_saved = std::exchange(saves_, status.saving->saves()) != status.saving->saves();
+  if (is_saved) session::keep_recent_file(saved);
   if (saving_ == Saving::tried && is_saved) return leave(waiting_, asks);
   const bool is_cancelled = saving_ == Saving::asked && !parts_.bar.has_dialog();
   if (saving_ == Saving::tried || is_cancelled) saving_ = Saving::none;
@@ -105,42 +105,40 @@ void StudioView::follow_saving(const RunStatus& status, Asks& asks) {
   if (!answer) return;
   if (*answer == Answer::discard) leave(waiting_, asks);
   if (*answer != Answer::save) return;
-  saving_ = status.saved.empty() ? Saving::asked : Saving::begun;
-  if (status.saved.empty())
+  saving_ = saved.empty() ? Saving::asked : Saving::begun;
+  if (saved.empty())
     parts_.bar.ask_where_to_save();
   else
-    asks.emplace_back(session::SaveShapeAs{std::string(status.saved)});
+    asks.emplace_back(session::SaveShapeAs{saved});
 }
 
 void StudioView::go(const Wish& wish, const RunStatus& status, Asks& asks) {
   if (const auto* const there = std::get_if<Go>(&wish))
     if (there->screen != Screen::start && there->screen != Screen::calibration)
       return go_to(there->screen, status, asks);
+  if (!timeline().lets(wish)) return;
   if (const auto* const open = std::get_if<Open>(&wish)) {
     if (open->file.empty()) return parts_.bar.ask_what_to_open();
-    if (open->file.ends_with(".nendo") || open->file.ends_with(".timeline.toml")) {
-      timeline_ = std::make_unique<TimelineScreen>(parts_.window, open->file);
+    if (opens_in_timeline(open->file)) {
+      timeline().open(open->file);
       session::keep_recent_file(open->file);
       return go_to(Screen::timeline, status, asks);
     }
   }
-  if (!asks_to_save_ || !status.modified) return leave(wish, asks);
+  if (!asks_to_save_ || !status.saving->is_modified(status.frame)) return leave(wish, asks);
   waiting_ = wish;
   parts_.bar.ask("the shape of " + file_);
 }
 
 void StudioView::go_to(Screen screen, const RunStatus& status, Asks& asks) {
   const bool is_timeline = screen == Screen::timeline;
-  if (is_timeline && status.facts.recorded) {
-    opens_recording_ = true;
-    asks.emplace_back(flow::SetRecording{false});
-  }
-  if (is_timeline && !timeline_)
-    timeline_ = std::make_unique<TimelineScreen>(parts_.window, recorded_);
+  // The recording that ends is the one to be shown.
+  if (is_timeline && status.facts.recorded) asks.emplace_back(flow::SetRecording{false});
+  if (is_timeline && timeline().screen() == nullptr) timeline().open(recorded_);
   if (is_timeline && !shows_timeline_) {
     held_ = status.frame.held;
     if (held_) asks.emplace_back(flow::Request::release);
-    timeline_->show_again();
+    timeline().screen()->show_again();
   }
   if (!is_timeline && shows_timeline_) {
     parts_.shaping->show_again(status);

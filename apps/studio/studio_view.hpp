@@ -7,7 +7,7 @@
 
 #include "session/views.hpp"
 #include "studio/bar.hpp"
-#include "studio/timeline_screen.hpp"
+#include "studio/timeline_tab.hpp"
 #include "studio/wish.hpp"
 
 namespace nendo::studio {
@@ -15,8 +15,8 @@ namespace nendo::studio {
 class StudioView final : public session::Observer {
 public:
   struct Parts {
-    std::shared_ptr<viewer::SceneWindow> window;
     Bar& bar;
+    TimelineTab& timeline;
     std::unique_ptr<session::WindowView> shaping;
   };
   /// `file` is the model's name in the bar. `asks_to_save`: leaving asks where the shape goes,
@@ -46,7 +46,8 @@ private:
   void go(const Wish& wish, const session::RunStatus& status, session::Asks& asks);
   void go_to(Screen screen, const session::RunStatus& status, session::Asks& asks);
   void leave(const Wish& wish, session::Asks& asks);
-  Screen screen() const noexcept;
+  Screen screen() const noexcept; ///< shaping or puppet
+  TimelineTab& timeline() noexcept { return parts_.timeline; }
 
   Parts parts_;
   std::string file_;
@@ -58,10 +59,8 @@ private:
   enum class Saving : std::uint8_t { none, asked, begun, tried } saving_ = Saving::none;
   std::uint32_t saves_ = 0; ///< the number of saves of the run so far
   std::string recorded_;
-  std::unique_ptr<TimelineScreen> timeline_;
   bool shows_timeline_ = false;
-  bool opens_recording_ = false; ///< when the recording that is made now is complete
-  bool held_ = false;            ///< the hands held the model before the timeline was shown
+  bool held_ = false; ///< the hands held the model before the timeline was shown
 };
 
 } // namespace nendo::studio

@@ -5,13 +5,10 @@
 #include <system_error>
 #include <utility>
 
-#include <imgui.h>
-
 #include <nendo/base/text.hpp>
 
 #include "edit/edit_actions.hpp"
-#include "viewer/controls.hpp"
-#include "viewer/theme.hpp"
+#include "studio/waiting.hpp"
 
 namespace nendo::studio {
 namespace {
@@ -62,6 +59,10 @@ bool TimelineScreen::is_modified() const noexcept {
   return editing_ && editing_->session().history().is_modified();
 }
 
+std::uint64_t TimelineScreen::revision() const noexcept {
+  return editing_ ? editing_->session().history().revision() : 0;
+}
+
 void TimelineScreen::save() {
   viewer::EditActions actions;
   actions.commands.push_back(viewer::EditCommand::save);
@@ -73,42 +74,26 @@ void TimelineScreen::show_again() {
 }
 
 /// Says what is done, or what there is to do.
-void TimelineScreen::show_waiting(Wish& wish) {
-  const render::SceneFrame nothing;
-  window_->leave_left(0);
-  window_->leave_below(0);
-  window_->begin_picture(nothing, false);
-  const ImVec2 all = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({all.x / 2.0F, all.y / 2.0F}, ImGuiCond_Always, {0.5F, 0.5F});
-  ImGui::Begin("timeline", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
-  if (file_.empty()) {
-    ImGui::TextUnformatted("Record while the hands shape: t begins, t again ends.\n"
-                           "The recording then opens here, as key poses of both hands.");
-    if (viewer::button("Open a recording or a timeline...")) wish = Open{};
-  } else {
-    ImGui::Text("Reading %s", printable(file_).c_str());
-  }
-  ImGui::End();
-  window_->end_picture();
-  if (window_->take_close_request()) wish = Quit{};
+Wish TimelineScreen::show_reading() {
+  const bool is_asked =
+      file_.empty() ? show_waiting(*window_,
+                                   "Record while the hands shape: t begins, t again ends.\n"
+                                   "The recording then opens here, as key poses of both hands.",
+                                   "Open a recording or a timeline...")
+                    : show_waiting(*window_, "Reading " + printable(file_));
+  if (window_->take_close_request()) return Quit{};
+  return is_asked ? Wish{Open{}} : Wish{};
 }
 
 Result<Wish> TimelineScreen::show() {
-  Wish wish;
   if (reading_.valid() && reading_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     auto frames = reading_.get();
     if (!frames) return frames.error();
     editing_ = std::make_unique<edit::WindowEditing>(window_, **frames, out_);
   }
-  if (!editing_) {
-    show_waiting(wish);
-    return wish;
-  }
+  if (!editing_) return show_reading();
   if (const auto shown = editing_->show(); !shown) return shown.error();
-  if (editing_->session().has_ended()) wish = Quit{};
-  return wish;
+  return editing_->session().has_ended() ? Wish{Quit{}} : Wish{};
 }
 
 } // namespace nendo::studio

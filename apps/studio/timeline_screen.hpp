@@ -37,13 +37,16 @@ public:
   void show_again();
 
   const std::string& file() const noexcept { return file_; }
+  const std::string& out() const noexcept { return out_; } ///< where it is saved
   bool is_modified() const noexcept;
+  std::uint64_t revision() const noexcept; ///< another after each edit, undo and redo
+  /// Saves the edits. A failure is shown as a message, and is_modified() stays true.
   void save();
   /// Returns the editing; null: the file is still being read, or there is none.
   edit::WindowEditing* editing() noexcept { return editing_.get(); }
 
 private:
-  void show_waiting(Wish& wish);
+  Wish show_reading();
 
   std::shared_ptr<viewer::SceneWindow> window_;
   std::string file_; ///< empty: none

@@ -21,6 +21,12 @@ std::vector<Control>& noted() {
   return all;
 }
 
+/// Two colours of a chosen button.
+void push_chosen() {
+  ImGui::PushStyleColor(ImGuiCol_Button, accent());
+  ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0F, 1.0F, 1.0F, 1.0F));
+}
+
 std::string& shown_tooltip() {
   static std::string text;
   return text;
@@ -111,11 +117,13 @@ void note_control(std::string_view name, std::string_view text, float around) {
   if ((control.min.array() < control.max.array()).all()) noted().push_back(std::move(control));
 }
 
-bool button(std::string_view name, float width, bool is_possible) {
+bool button(std::string_view name, float width, bool is_possible, bool is_chosen) {
   const std::string text(name);
+  if (is_chosen) push_chosen();
   ImGui::BeginDisabled(!is_possible);
   const bool pressed = ImGui::Button(text.c_str(), ImVec2(width, 0.0F));
   ImGui::EndDisabled();
+  if (is_chosen) ImGui::PopStyleColor(2);
   note_control(name, name, 2.0F);
   if (!noted().empty()) noted().back().is_possible = is_possible;
   return pressed && is_possible;
@@ -144,10 +152,7 @@ bool one_of(std::span<const Choice> choices, std::size_t& chosen, std::size_t in
   for (std::size_t at = 0; at < choices.size(); ++at) {
     if (at % in_line != 0) ImGui::SameLine();
     const bool is_chosen = at == chosen;
-    if (is_chosen) {
-      ImGui::PushStyleColor(ImGuiCol_Button, accent());
-      ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0F, 1.0F, 1.0F, 1.0F));
-    }
+    if (is_chosen) push_chosen();
     ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.5F, 1.0F));
     const bool pressed = ImGui::Button(std::string(choices[at].name).c_str(),
                                        ImVec2(width, ImGui::GetFrameHeight() + high));

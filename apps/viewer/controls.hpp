@@ -18,8 +18,9 @@ void show_text(std::string_view text);
 /// Notes the latest item of ImGui. text: what it shows. around: the width beside the text.
 void note_control(std::string_view name, std::string_view text, float around = 0.0F);
 
-/// Width 0: as wide as its text.
-bool button(std::string_view name, float width = 0.0F, bool is_possible = true);
+/// Width 0: as wide as its text. A chosen one has the accent's colour.
+bool button(std::string_view name, float width = 0.0F, bool is_possible = true,
+            bool is_chosen = false);
 /// A box with its name at the right.
 bool check(std::string_view name, bool& value);
 /// A header that opens and closes what follows it. Returns whether it is open.

@@ -31,16 +31,6 @@ LiveWindow::LiveWindow(std::shared_ptr<SceneWindow> window)
 
 LiveWindow::~LiveWindow() = default;
 
-Result<std::unique_ptr<LiveWindow>> LiveWindow::open(const std::string& title,
-                                                     const WindowLook& look) {
-  auto window = SceneWindow::open(
-      title, look,
-      "on a box without a screen `nendo run --web 8080` shows the run in a browser, and `nendo "
-      "picture` and `nendo run --picture` draw files");
-  if (!window) return window.error();
-  return std::make_unique<LiveWindow>(*std::move(window));
-}
-
 void LiveWindow::begin(const deform::BlockLayout& layout, const render::SceneBuilder& builder,
                        const flow::LoopSettings& settings) {
   set_model(layout, builder);

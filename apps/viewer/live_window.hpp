@@ -40,8 +40,6 @@ using Commands = std::vector<flow::Command>;
 
 class LiveWindow {
 public:
-  /// Opens a window. Error: failed (no screen, no OpenGL 3.3); the message has an alternative.
-  static Result<std::unique_ptr<LiveWindow>> open(const std::string& title, const WindowLook& look);
   /// Draws into `window`, not null, which others may use between two pictures.
   explicit LiveWindow(std::shared_ptr<SceneWindow> window);
   ~LiveWindow();

@@ -198,13 +198,6 @@ TimelineWindow::TimelineWindow(std::shared_ptr<SceneWindow> window)
 
 TimelineWindow::~TimelineWindow() = default;
 
-Result<std::unique_ptr<TimelineWindow>>
-TimelineWindow::open(const std::string& title, const WindowLook& look, const std::string& instead) {
-  auto window = SceneWindow::open(title, look, instead);
-  if (!window) return window.error();
-  return std::make_unique<TimelineWindow>(*std::move(window));
-}
-
 EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFrame& scene_frame) {
   EditActions actions;
   window_->leave_below(DopeSheetWidget::height_for(view.lanes.size()));

@@ -13,10 +13,6 @@ namespace nendo::viewer {
 
 class TimelineWindow {
 public:
-  /// Opens a window. Error: failed (no screen, no OpenGL 3.3). The message ends with `instead`, the
-  /// alternative without a window.
-  static Result<std::unique_ptr<TimelineWindow>>
-  open(const std::string& title, const WindowLook& look, const std::string& instead);
   /// Draws into `window`, not null, which others may use between two pictures.
   explicit TimelineWindow(std::shared_ptr<SceneWindow> window);
   ~TimelineWindow();

@@ -15,6 +15,7 @@
 #include <nendo/recording/take_tools.hpp>
 
 #include "session/asking_run.hpp"
+#include "session/run_saving.hpp"
 #include "support/flow_fixtures.hpp"
 
 namespace run_session_test {
@@ -33,18 +34,18 @@ public:
   Namer(std::string file, bool is_settled) : file_(std::move(file)), is_settled_(is_settled) {}
   void update(const RunStatus& status, Asks& asks) override {
     if (!status.fresh) return;
-    was_modified = was_modified || status.modified;
-    if (step_ == 0 && status.modified) {
+    was_modified = was_modified || status.saving->is_modified(status.frame);
+    if (step_ == 0 && status.saving->is_modified(status.frame)) {
       asks.emplace_back(flow::Request::release);
       step_ = 1;
     } else if (step_ == 1 && !status.frame.held) {
       asks.emplace_back(SaveShapeAs{file_});
       step_ = 2;
-    } else if (step_ == 2 && status.saves == 1) {
-      was_clean = !status.modified && status.saved == file_;
+    } else if (step_ == 2 && status.saving->saves() == 1) {
+      was_clean = !status.saving->is_modified(status.frame) && status.saving->saved() == file_;
       asks.emplace_back(flow::SaveShape{});
       step_ = 3;
-    } else if (step_ == 3 && status.saves == 2) {
+    } else if (step_ == 3 && status.saving->saves() == 2) {
       asks.emplace_back(flow::EndRun{});
     }
   }

@@ -11,6 +11,7 @@
 
 #include "reference/wearers.hpp"
 #include "studio/calibration_screen.hpp"
+#include "support/open_window.hpp"
 #include "viewer/control_list.hpp"
 
 namespace nendo::test {
@@ -45,15 +46,11 @@ private:
 
 /// A mouse before a screen.
 struct Visitor {
-  std::unique_ptr<viewer::SceneWindow> window;
+  std::shared_ptr<viewer::SceneWindow> window;
   std::optional<studio::CalibrationScreen> screen;
   std::optional<Result<studio::CalibrationOutcome>> outcome;
 
-  explicit Visitor(const viewer::WindowLook& look) {
-    auto opened = viewer::SceneWindow::open("test", look, "nothing");
-    REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
-    window = *std::move(opened);
-  }
+  explicit Visitor(const viewer::WindowLook& look) { window = test::open_window(look); }
   void look(int pictures = 1) {
     for (int picture = 0; picture < pictures && !outcome; ++picture)
       outcome = screen->show(*window);

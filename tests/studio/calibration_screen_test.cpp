@@ -14,6 +14,7 @@
 #include "support/restraint.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_files.hpp"
+#include "viewer/pointing.hpp"
 
 namespace calibration_screen_test {
 
@@ -305,7 +306,7 @@ TEST_SUITE("calibration_screen" * doctest::skip(!test::restraint_is_counted)) {
       const render::Camera camera =
           studio::camera_for(studio::view_of(PoseId::pinch_little, side), 0.4, 1.2);
       const Eigen::Vector3d knuckle = pose[hand::Joint::ring_intermediate].translation();
-      const Eigen::Vector2d pixel = studio::pixel_of(camera, size, knuckle);
+      const Eigen::Vector2d pixel = viewer::pixel_of(camera, knuckle, size).value();
       CHECK(studio::sensor_at(pixel, camera, size, pose, sensors_22) == Sensor::ring_pip);
       const Eigen::Vector2d beside = pixel + Eigen::Vector2d(0.0, 25.0);
       CHECK_FALSE(studio::sensor_at(beside, camera, size, pose, sensors_22));

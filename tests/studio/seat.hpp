@@ -7,8 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/open_window.hpp"
 #include "viewer/control_list.hpp"
-#include "viewer/scene_window.hpp"
 
 namespace nendo::test {
 
@@ -17,9 +17,7 @@ struct StudioSeat {
   std::function<void()> show; ///< draws a picture
 
   explicit StudioSeat(const viewer::WindowLook& look = {{1280, 800}, viewer::Theme::light, 1.0F}) {
-    auto opened = viewer::SceneWindow::open("test", look, "nothing else");
-    REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
-    window = *std::move(opened);
+    window = test::open_window(look);
   }
 
   const viewer::Control* control(const std::string& name) const {

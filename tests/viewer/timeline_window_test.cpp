@@ -8,6 +8,7 @@
 #include "support/control_laws.hpp"
 #include "support/flow_fixtures.hpp"
 #include "support/memory_screen.hpp"
+#include "support/open_window.hpp"
 #include "support/restraint.hpp"
 #include "viewer/command_widgets.hpp"
 #include "viewer/control_list.hpp"
@@ -38,9 +39,7 @@ struct Seat {
 
   explicit Seat(const WindowLook& look = {size, Theme::dark, 1.0F})
       : scale(static_cast<double>(*look.scale)) {
-    auto opened = TimelineWindow::open("test", look, "nothing else");
-    REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
-    window = *std::move(opened);
+    window = std::make_unique<TimelineWindow>(test::open_window(look));
     window->scene_window().set_model(test.loop->changes().layout(),
                                      SceneBuilder(test.model, test.placement.units_per_metre));
     const flow::Frame& frame = test.frame_after_tick(0);

@@ -8,6 +8,7 @@
 #include "support/control_laws.hpp"
 #include "support/flow_fixtures.hpp"
 #include "support/memory_screen.hpp"
+#include "support/open_window.hpp"
 #include "support/restraint.hpp"
 #include "viewer/control_list.hpp"
 #include "viewer/live_window.hpp"
@@ -50,9 +51,7 @@ struct Person {
   Gauges gauges;
 
   explicit Person(WindowLook look = {size, Theme::light, 1.0F}) : frame(test.frame_after_tick(0)) {
-    auto opened = LiveWindow::open("test", look);
-    REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
-    window = *std::move(opened);
+    window = std::make_unique<LiveWindow>(test::open_window(look));
     flow::LoopSettings settings;
     settings.radius_m.fill(0.1);
     window->begin(test.loop->changes().layout(), builder, settings);

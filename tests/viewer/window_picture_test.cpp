@@ -19,6 +19,7 @@
 #include "render/picture.hpp"
 #include "support/memory_screen.hpp"
 #include "support/nasty_meshes.hpp"
+#include "support/open_window.hpp"
 #include "support/restraint.hpp"
 #include "support/six_colours.hpp"
 #include "support/temporary_folder.hpp"
@@ -44,13 +45,11 @@ struct Look {
   deform::Mesh mesh;
   deform::BlockLayout layout;
   SceneBuilder builder;
-  std::unique_ptr<SceneWindow> window;
+  std::shared_ptr<SceneWindow> window;
   SceneFrame frame; ///< without hands, at first
 
   explicit Look(const deform::Mesh& model) : mesh(model), layout(model.vertices), builder(model) {
-    auto opened = SceneWindow::open("test", {size, Theme::light, 1.0F}, "nothing else");
-    REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
-    window = *std::move(opened);
+    window = test::open_window({size, Theme::light, 1.0F});
     window->set_model(layout, builder);
     window->follow(layout.pack());
     picture();

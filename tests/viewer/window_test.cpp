@@ -10,6 +10,7 @@
 #include "support/eventually.hpp"
 #include "support/flow_fixtures.hpp"
 #include "support/memory_screen.hpp"
+#include "support/open_window.hpp"
 #include "support/restraint.hpp"
 #include "viewer/live_window.hpp"
 #include "viewer/puppet_editor.hpp"
@@ -37,16 +38,6 @@ double intersection_over_union(const Image& a, const Image& b) {
 } // namespace
 
 TEST_SUITE("window") {
-  TEST_CASE("without a screen there is one line that says what to do instead") {
-    ::unsetenv("DISPLAY");
-    ::unsetenv("WAYLAND_DISPLAY");
-    const auto window = LiveWindow::open("test", {{320, 240}, Theme::light, 1.0F});
-    REQUIRE_FALSE(window);
-    CHECK(window.error().code == Errc::failed);
-    CHECK(window.error().message.find("nendo picture") != std::string::npos);
-    CHECK(window.error().message.find('\n') == std::string::npos);
-  }
-
   TEST_CASE("OpenGL draws what the processor draws, and sends only blocks that changed") {
     if (!test::restraint_is_counted) return; // Mesa's own memory is not for our sanitizers
     const test::MemoryScreen screen;
@@ -56,9 +47,7 @@ TEST_SUITE("window") {
     }
     test::LoopUnderTest test(flow::Mode::type1);
     constexpr Size size{400, 300};
-    auto opened = LiveWindow::open("test", {size, Theme::light, 1.0F});
-    REQUIRE_MESSAGE(opened, (opened ? "" : opened.error().message));
-    LiveWindow& window = **opened;
+    LiveWindow window(test::open_window({size, Theme::light, 1.0F}));
     const SceneBuilder builder(test.model, test.placement.units_per_metre);
     window.begin(test.loop->changes().layout(), builder, {});
     const auto blocks = test.loop->changes().layout().block_count();
@@ -106,9 +95,7 @@ TEST_SUITE("window") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
     test::LoopUnderTest test(flow::Mode::type1);
-    auto opened = LiveWindow::open("test", {{400, 300}, Theme::light, 1.0F});
-    REQUIRE(opened);
-    LiveWindow& window = **opened;
+    LiveWindow window(test::open_window({{400, 300}, Theme::light, 1.0F}));
     flow::LoopSettings settings;
     settings.radius_m.fill(0.1);
     window.begin(test.loop->changes().layout(),
@@ -180,9 +167,7 @@ TEST_SUITE("window") {
     if (!screen.is_there()) return;
     test::LoopUnderTest test(flow::Mode::type1);
     constexpr Size size{800, 600};
-    auto opened = LiveWindow::open("test", {size, Theme::light, 1.0F});
-    REQUIRE(opened);
-    LiveWindow& window = **opened;
+    LiveWindow window(test::open_window({size, Theme::light, 1.0F}));
     const SceneBuilder builder(test.model, test.placement.units_per_metre);
     REQUIRE(builder.origin_m().norm() > 0.1);
     window.begin(test.loop->changes().layout(), builder, {});
@@ -219,9 +204,7 @@ TEST_SUITE("window") {
     if (!screen.is_there()) return;
     test::LoopUnderTest test(flow::Mode::type1);
     constexpr Size size{800, 600};
-    auto opened = LiveWindow::open("test", {size, Theme::light, 1.0F});
-    REQUIRE(opened);
-    LiveWindow& window = **opened;
+    LiveWindow window(test::open_window({size, Theme::light, 1.0F}));
     const SceneBuilder builder(test.model, test.placement.units_per_metre);
     window.begin(test.loop->changes().layout(), builder, {});
     PuppetEditor& editor = window.editor();

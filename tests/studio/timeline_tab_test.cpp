@@ -1,0 +1,99 @@
+// The timeline of the studio, whose unsaved edits are not lost without a question.
+
+#include <filesystem>
+
+#include <doctest/doctest.h>
+
+#include "studio/seat.hpp"
+#include "studio/timeline_tab.hpp"
+#include "support/memory_screen.hpp"
+#include "support/restraint.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/test_meshes.hpp"
+#include "support/timelines.hpp"
+
+namespace timeline_tab_test {
+
+using namespace nendo;
+using namespace nendo::studio;
+
+namespace {
+
+struct Seat : test::StudioSeat {
+  test::TemporaryFolder folder;
+  std::string out = (folder.path() / "wave.timeline.toml").string();
+  Bar bar{*window};
+  TimelineTab tab{window, bar};
+
+  Seat() {
+    const deform::Mesh model = test::sphere(12, 24, 1.0);
+    auto frames =
+        takes::TimelineFrames::make(test::waved_timeline(model, flow::Mode::type1), model);
+    REQUIRE(frames);
+    tab.open(
+        FirstTimeline{"wave.nendo", out, *std::move(frames), timeline::KeyRef{Side::right, 3}});
+    show = [this] {
+      bar.set({Screen::timeline, out, tab.is_modified(), false});
+      REQUIRE(tab.screen()->show());
+    };
+    show();
+  }
+  void edit(viewer::EditCommand command) {
+    viewer::EditActions actions;
+    actions.commands = {command};
+    tab.screen()->editing()->session().handle(actions);
+  }
+};
+
+bool quits(const Wish& wish) {
+  return std::holds_alternative<Quit>(wish);
+}
+
+} // namespace
+
+TEST_SUITE("timeline_tab" * doctest::skip(!test::restraint_is_counted)) {
+  TEST_CASE("leaving a timeline without edits, and other screens, asks nothing") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Seat seat;
+    CHECK(seat.tab.lets(Quit{}));
+    seat.edit(viewer::EditCommand::delete_key);
+    REQUIRE(seat.tab.is_modified());
+    CHECK(seat.tab.lets(Go{Screen::start}));
+    CHECK(seat.tab.lets(Open{"bust.obj"}));
+    CHECK_FALSE(seat.bar.has_dialog());
+  }
+
+  TEST_CASE("edits are saved, discarded or kept as the user answers") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Seat seat;
+    seat.edit(viewer::EditCommand::delete_key);
+    REQUIRE_FALSE(seat.tab.lets(Open{"other.nendo"}));
+    seat.show();
+    seat.show();
+    seat.press("Stay");
+    CHECK_FALSE(is_wish(seat.tab.take_settled()));
+    CHECK(seat.tab.is_modified());
+
+    REQUIRE_FALSE(seat.tab.lets(Quit{}));
+    seat.show();
+    seat.show();
+    seat.press("Discard");
+    CHECK(quits(seat.tab.take_settled()));
+    CHECK(seat.tab.lets(Quit{})); // the answer holds for these edits
+    CHECK_FALSE(std::filesystem::exists(seat.out));
+
+    seat.edit(viewer::EditCommand::undo);
+    seat.edit(viewer::EditCommand::mirror);
+    REQUIRE_FALSE(seat.tab.lets(Quit{})); // and not for others
+    seat.show();
+    seat.show();
+    seat.press("Save");
+    CHECK(quits(seat.tab.take_settled()));
+    CHECK_FALSE(seat.tab.is_modified());
+    CHECK(std::filesystem::exists(seat.out));
+  }
+}
+
+} // namespace timeline_tab_test
