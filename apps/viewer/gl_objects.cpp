@@ -544,12 +544,12 @@ void SmoothTarget::begin(render::Size size, bool smooth) {
   glBindFramebuffer(GL_FRAMEBUFFER, frame_buffer_);
 }
 
-void SmoothTarget::end(int below) const {
+void SmoothTarget::end(render::Size shown, int below) const {
   if (frame_buffer_ == 0) return;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, frame_buffer_);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  glBlitFramebuffer(0, 0, size_.width, size_.height, 0, below, size_.width, below + size_.height,
-                    GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBlitFramebuffer(0, 0, size_.width, size_.height, 0, below, shown.width, below + shown.height,
+                    GL_COLOR_BUFFER_BIT, size_ == shown ? GL_NEAREST : GL_LINEAR);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 

@@ -126,8 +126,9 @@ public:
   /// Binds this framebuffer, of that size and, with `smooth`, multisampled as far as this OpenGL
   /// supports it. Without such a buffer, the window's own stays bound.
   void begin(render::Size size, bool smooth);
-  /// Binds the window's buffer, and copies the picture into it, `below` pixels above the bottom.
-  void end(int below) const;
+  /// Binds the window's buffer, and copies the picture into it, in that size, `below` pixels above
+  /// the bottom.
+  void end(render::Size shown, int below) const;
   /// Returns whether the picture still exists, so that end() may be called again.
   bool keeps() const noexcept { return frame_buffer_ != 0; }
 

@@ -415,8 +415,10 @@ void SceneWindow::follow_view_keys() {
 void SceneWindow::end_picture() {
   ImGui::Render();
   quick_->reset_keyboard();
-  draw_all(!draws_itself_);
+  draw_all(!draws_itself_, sharpness_.part());
   glfwSwapBuffers(window_);
+  if (draws_itself_ && !shown_.smooth)
+    sharpness_.took(1e3 * seconds_between(begun_, HostClock::now()));
   write_controls();
   std::this_thread::sleep_until(begun_ + min_period);
 }
@@ -427,23 +429,30 @@ bool SceneWindow::Shown::is_of(const SceneWindow& window, render::Size wanted) c
 }
 
 // An unchanged picture is drawn once. Where there is no graphics card, most of the time goes
-// into the scene: there its edges are smoothed once it rests.
-void SceneWindow::draw_scene(render::Size size, bool finest) {
+// into the scene: there its edges are smoothed once it rests, and while it moves, it may have only
+// a part of the window's pixels.
+void SceneWindow::draw_scene(render::Size size, bool finest, double part) {
   const bool rests = target_->keeps() && shown_.is_of(*this, size);
   if (rests && shown_.smooth) return;
   const bool smooth = finest || rests;
-  target_->begin(size, smooth);
-  renderer_->draw(scene_, camera_, size, style_, !smooth);
+  const auto drawn = [&](int pixels) {
+    return smooth ? pixels : std::max(1, static_cast<int>(part * pixels));
+  };
+  const render::Size drawn_size{drawn(size.width), drawn(size.height)};
+  Style style = style_;
+  if (!smooth) style.line_width_px *= static_cast<float>(part);
+  target_->begin(drawn_size, smooth);
+  renderer_->draw(scene_, camera_, drawn_size, style, !smooth);
   shown_ = {scene_, camera_, size, blocks_sent(), style_, smooth};
 }
 
-void SceneWindow::draw_all(bool finest) {
+void SceneWindow::draw_all(bool finest, double part) {
   const render::Size all = pixels_of(window_);
   const int below = std::clamp(below_, 0, all.height - 1);
   const render::Size size{all.width, all.height - below};
   glClear(GL_COLOR_BUFFER_BIT);
-  draw_scene(size, finest);
-  target_->end(below);
+  draw_scene(size, finest, part);
+  target_->end(size, below);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
@@ -464,9 +473,14 @@ render::Camera SceneWindow::stage_camera() const noexcept {
   return camera;
 }
 
-render::Image SceneWindow::screenshot(bool is_quick) {
-  if (is_quick) shown_.size = {}; // as if it were the first one of its kind
-  draw_all(!is_quick);            // again, for what was shown may be gone
+render::Image SceneWindow::screenshot() {
+  draw_all(true); // again, for what was shown may be gone
+  return read_pixels(pixels_of(window_));
+}
+
+render::Image SceneWindow::moving_screenshot(double part) {
+  shown_.size = {}; // as if it were the first one of its kind
+  draw_all(false, part);
   return read_pixels(pixels_of(window_));
 }
 

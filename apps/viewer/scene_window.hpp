@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "viewer/gl_renderer.hpp"
+#include "viewer/motion_sharpness.hpp"
 #include "viewer/window_look.hpp"
 
 struct GLFWwindow;
@@ -108,9 +109,11 @@ public:
   const render::Scene& scene() const noexcept { return scene_; } ///< without the model's positions
   std::uint64_t blocks_sent() const noexcept { return renderer_->blocks_sent(); }
 
-  /// Returns the last shown picture, or with `is_quick` draws it as it is drawn without a graphics
-  /// card while something moves.
-  render::Image screenshot(bool is_quick = false);
+  /// Returns the last shown picture.
+  render::Image screenshot();
+  /// Draws the last shown picture as without a graphics card while something moves, with a scene
+  /// of that part of the window's width and height in pixels.
+  render::Image moving_screenshot(double part);
   /// Does the same as render::silhouette() with OpenGL, for the last shown scene.
   render::Image silhouette(render::Size size);
   /// Replaces mouse and keyboard by `input` from the next picture on.
@@ -136,8 +139,8 @@ private:
   void choose_camera(render::View view);
   void look_at(std::span<const Eigen::Vector3f> points, render::View view);
   void put_simulated() const;
-  void draw_all(bool finest);
-  void draw_scene(render::Size size, bool finest);
+  void draw_all(bool finest, double part = 1.0);
+  void draw_scene(render::Size size, bool finest, double part);
 
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<GlRenderer> renderer_;
@@ -152,6 +155,7 @@ private:
   render::Camera camera_;
   Style style_;
   std::array<std::uint32_t, 2> in_reach_{deform::no_index, deform::no_index};
+  MotionSharpness sharpness_;
   Shown shown_; ///< the inputs of the picture in target_; initially of zero size
   HostTime begun_{};
   struct Framed {
