@@ -115,8 +115,8 @@ void LiveWindow::Panel::parts(SceneWindow& window) {
       std::pair{"vectors", &shown.vectors},  std::pair{"radii", &shown.radii},
       std::pair{"contact", &shown.contacts}, std::pair{"facets", &window.facets()}};
   auto material = static_cast<std::size_t>(window.material());
-  if (choice_field("material", material_names, material))
-    window.material() = static_cast<Material>(material);
+  if (choice_field("material", gl::material_names, material))
+    window.material() = static_cast<gl::Material>(material);
   show_help("next material");
   const float left = ImGui::GetCursorPosX();
   const float half = ImGui::GetContentRegionAvail().x / 2.0F;

@@ -13,8 +13,8 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include "gl/smooth_target.hpp"
 #include "viewer/control_list.hpp"
-#include "viewer/gl_objects.hpp"
 #include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
 
@@ -187,10 +187,10 @@ SceneWindow::open(const std::string& title, const WindowLook& look, const std::s
     return without_window("no OpenGL 3.3 here: " + glfw_error(), instead);
   glfwMakeContextCurrent(window->window_);
   glfwSwapInterval(1);
-  auto renderer = GlRenderer::make();
+  auto renderer = gl::Renderer::make();
   if (!renderer) return without_window(renderer.error().message, instead);
   window->renderer_ = *std::move(renderer);
-  window->target_ = std::make_unique<SmoothTarget>();
+  window->target_ = std::make_unique<gl::SmoothTarget>();
   window->draws_itself_ = draws_itself();
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr; // leaves no file behind
@@ -233,7 +233,7 @@ void SceneWindow::clear_model(bool has_ground) {
   builder_ = render::SceneBuilder(deform::Mesh());
   parts_.ground = has_ground;
   shown_.size = {};
-  renderer_->clear_model();
+  renderer_->model().clear();
 }
 
 std::vector<std::string> SceneWindow::take_dropped() {
@@ -309,7 +309,7 @@ double SceneWindow::covered_part() const noexcept {
 void SceneWindow::choose_camera(render::View view) {
   auto points = scene_.outline();
   const Eigen::Vector3f half = (builder_.size_m() / 2).cast<float>();
-  Eigen::AlignedBox3f box = renderer_->model_box();
+  Eigen::AlignedBox3f box = renderer_->model().box();
   box.extend(Eigen::Vector3f(-half.x(), 0.0F, -half.z()));
   box.extend(Eigen::Vector3f(half.x(), 2.0F * half.y(), half.z()));
   for (int corner = 0; corner < 8; ++corner)
@@ -402,8 +402,8 @@ void SceneWindow::execute(std::string_view name) {
   for (const ViewChoice& choice : views)
     if (name == choice.name) camera_.view = choice.view;
   if (name == "next material")
-    style_.material = static_cast<Material>((static_cast<std::size_t>(style_.material) + 1) %
-                                            material_names.size());
+    style_.material = static_cast<gl::Material>((static_cast<std::size_t>(style_.material) + 1) %
+                                                gl::material_names.size());
 }
 
 void SceneWindow::follow_view_keys() {
@@ -439,7 +439,7 @@ void SceneWindow::draw_scene(render::Size size, bool finest, double part) {
     return smooth ? pixels : std::max(1, static_cast<int>(part * pixels));
   };
   const render::Size drawn_size{drawn(size.width), drawn(size.height)};
-  Style style = style_;
+  gl::Style style = style_;
   if (!smooth) style.line_width_px *= static_cast<float>(part);
   target_->begin(drawn_size, smooth);
   renderer_->draw(scene_, camera_, drawn_size, style, !smooth);

@@ -10,16 +10,19 @@
 #include <string>
 #include <vector>
 
-#include "viewer/gl_renderer.hpp"
+#include "gl/renderer.hpp"
 #include "viewer/motion_sharpness.hpp"
 #include "viewer/window_look.hpp"
 
 struct GLFWwindow;
 
+namespace nendo::gl {
+class SmoothTarget;
+}
+
 namespace nendo::viewer {
 
 class QuickInput;
-class SmoothTarget;
 
 /// Simulated input of a mouse and a keyboard, for tests.
 struct SimulatedInput {
@@ -50,7 +53,7 @@ public:
   /// y = 0 is the ground. The next model gets a camera of its own.
   void clear_model(bool has_ground = false);
   bool has_model() const noexcept { return !builder_.corners().empty(); }
-  void follow(const deform::BlockShape& shape) { renderer_->follow(shape); }
+  void follow(const deform::BlockShape& shape) { renderer_->model().follow(shape); }
 
   /// Begins a picture: processes the input since the last one, and builds the scene except the
   /// model. Chooses the camera for each frame until the first one with is_whole. Widgets may
@@ -70,8 +73,8 @@ public:
   /// left and bottom, as in Blender.
   void follow_view_keys();
   render::SceneParts& parts() noexcept { return parts_; }
-  bool& facets() noexcept { return style_.facets; }         ///< flat instead of smooth shading
-  Material& material() noexcept { return style_.material; } ///< the model's
+  bool& facets() noexcept { return style_.facets; }             ///< flat instead of smooth shading
+  gl::Material& material() noexcept { return style_.material; } ///< the model's
   /// Sets the parts of the model that are in reach of the hands. They have an outline while radii
   /// are shown.
   void set_parts_in_reach(std::shared_ptr<const deform::ModelParts> parts,
@@ -107,7 +110,7 @@ public:
   /// coordinates.
   render::Camera stage_camera() const noexcept;
   const render::Scene& scene() const noexcept { return scene_; } ///< without the model's positions
-  std::uint64_t blocks_sent() const noexcept { return renderer_->blocks_sent(); }
+  std::uint64_t blocks_sent() const noexcept { return renderer_->model().blocks_sent(); }
 
   /// Returns the last shown picture.
   render::Image screenshot();
@@ -126,7 +129,7 @@ private:
     render::Camera camera;
     render::Size size;
     std::uint64_t blocks_sent = 0;
-    Style style;
+    gl::Style style;
     bool smooth = false; ///< multisampled; not compared
     /// Returns whether the picture would be the same now. Compares the scene last, because it is
     /// the largest.
@@ -143,8 +146,8 @@ private:
   void draw_scene(render::Size size, bool finest, double part);
 
   GLFWwindow* window_ = nullptr;
-  std::unique_ptr<GlRenderer> renderer_;
-  std::unique_ptr<SmoothTarget> target_;
+  std::unique_ptr<gl::Renderer> renderer_;
+  std::unique_ptr<gl::SmoothTarget> target_;
   render::SceneBuilder builder_;
   std::optional<SimulatedInput> simulated_;
   std::unique_ptr<QuickInput> quick_;
@@ -153,7 +156,7 @@ private:
   render::SceneParts parts_;
   render::Scene scene_;
   render::Camera camera_;
-  Style style_;
+  gl::Style style_;
   std::array<std::uint32_t, 2> in_reach_{deform::no_index, deform::no_index};
   MotionSharpness sharpness_;
   Shown shown_; ///< the inputs of the picture in target_; initially of zero size

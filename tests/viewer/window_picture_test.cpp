@@ -318,8 +318,8 @@ TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
     SimulatedInput next;
     next.shift = true;
     next.taps = {GLFW_KEY_V};
-    for (std::size_t at = 0; at < material_names.size(); ++at) {
-      CHECK(look.window->material() == static_cast<viewer::Material>(at));
+    for (std::size_t at = 0; at < gl::material_names.size(); ++at) {
+      CHECK(look.window->material() == static_cast<gl::Material>(at));
       images.push_back(look.picture());
       CHECK(look.picture() == images.back());
       // As seen from the eye, the light comes from the left and from above.
@@ -335,7 +335,7 @@ TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
       look.picture(next);
       look.picture();
     }
-    CHECK(look.window->material() == viewer::Material::lit);
+    CHECK(look.window->material() == gl::Material::lit);
     for (std::size_t a = 0; a < images.size(); ++a)
       for (std::size_t b = 0; b < a; ++b)
         CHECK(mean_difference(images[a], images[b]) > 2.0); // of all pixels; the ball has a quarter
@@ -348,9 +348,9 @@ TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
     std::vector<Image> images;
     for (const bool coloured : {false, true}) {
       Look look(coloured ? test::with_six_colours(mesh) : mesh);
-      look.window->material() = viewer::Material::wax;
+      look.window->material() = gl::Material::wax;
       images.push_back(look.picture());
-      look.window->material() = viewer::Material::lit;
+      look.window->material() = gl::Material::lit;
       images.push_back(look.picture());
     }
     CHECK(images[0] == images[2]);
@@ -362,7 +362,7 @@ TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
     if (!screen.is_there()) return;
     Look look(test::sphere(60, 120, 1.0));
     look.window->parts().hands = false;
-    look.window->material() = viewer::Material::plaster;
+    look.window->material() = gl::Material::plaster;
     look.picture();
     CHECK(line_pixels(look.picture()).empty()); // no hand
     const Camera& camera = look.window->camera();
@@ -409,7 +409,7 @@ TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
     }
     Look look(mesh);
     look.window->parts().ground = false;
-    look.window->material() = viewer::Material::plaster;
+    look.window->material() = gl::Material::plaster;
     const auto parts = std::make_shared<const deform::ModelParts>(mesh, look.layout);
     CHECK(line_pixels(look.picture()).empty());
     look.window->set_parts_in_reach(parts, {deform::no_index, 1});
@@ -443,7 +443,7 @@ TEST_SUITE("window_picture" * doctest::skip(!test::restraint_is_counted)) {
           1.0 + 0.1 * std::sin(7.0 * out.x()) * std::sin(7.0 * out.y()) * std::sin(7.0 * out.z());
     }
     Look look(mesh);
-    for (const auto material : {viewer::Material::lit, viewer::Material::clay}) {
+    for (const auto material : {gl::Material::lit, gl::Material::clay}) {
       look.window->material() = material;
       const Image fine = look.picture();
       for (const double part : {1.0, 0.5}) {

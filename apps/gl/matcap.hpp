@@ -11,7 +11,7 @@
 
 #include "render/image.hpp"
 
-namespace nendo::viewer {
+namespace nendo::gl {
 
 /// lit: the model's own colours and textures in the scene's lights. The others are MatCaps.
 enum class Material : std::uint8_t { lit, clay, plaster, wax, skin };
@@ -26,4 +26,4 @@ Eigen::Vector3f matcap_colour(Material material, const Eigen::Vector3f& normal);
 /// have the colours of the nearest place of the sphere.
 render::Image matcap(Material material, int side_px = 128);
 
-} // namespace nendo::viewer
+} // namespace nendo::gl

@@ -1,9 +1,9 @@
-#include "viewer/matcap.hpp"
+#include "gl/matcap.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace nendo::viewer {
+namespace nendo::gl {
 
 using Eigen::Vector3f;
 
@@ -84,4 +84,4 @@ render::Image matcap(Material material, int side_px) {
   return image;
 }
 
-} // namespace nendo::viewer
+} // namespace nendo::gl

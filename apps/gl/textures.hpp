@@ -1,0 +1,53 @@
+#pragma once
+// The textures of a model, and of MatCaps. All calls: the thread with the OpenGL context.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "gl/matcap.hpp"
+#include "render/paint.hpp"
+
+namespace nendo::gl {
+
+/// The textures of a model, and the texture coordinates and colours of its triangles' corners.
+class ModelTextures {
+public:
+  ModelTextures() = default;
+  ~ModelTextures();
+  ModelTextures(const ModelTextures&) = delete;
+  ModelTextures& operator=(const ModelTextures&) = delete;
+
+  /// Sets the paint of a model. `corners` are indices of vertices, three per triangle, and
+  /// `colours` those of vertices. Omits pictures that are too large for the GPU.
+  void set(const render::Paint& paint, const std::vector<std::uint32_t>& corners,
+           const std::vector<Eigen::Vector3f>& colours);
+  /// Selects the corners' data for drawing.
+  void bind() const;
+  /// Selects the coat's picture for drawing. Returns false if it has none.
+  bool use(std::size_t coat) const;
+
+private:
+  void remove();
+
+  std::array<unsigned, 3> buffers_{};
+  std::array<unsigned, 3> buffer_textures_{}; ///< 0: no such data per corner
+  std::vector<unsigned> pictures_;            ///< one per coat; 0: none
+};
+
+/// The pictures of all MatCaps.
+class MatCapTextures {
+public:
+  MatCapTextures();
+  ~MatCapTextures();
+  MatCapTextures(const MatCapTextures&) = delete;
+  MatCapTextures& operator=(const MatCapTextures&) = delete;
+  /// Selects the material's picture, which must be a MatCap, for drawing.
+  void use(Material material) const;
+
+private:
+  std::array<unsigned, material_names.size() - 1> names_{};
+};
+
+} // namespace nendo::gl
