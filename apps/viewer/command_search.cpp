@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include <nendo/base/endings.hpp>
 
@@ -33,11 +31,6 @@ bool fits(const commands::Row& row, std::string_view text) {
 
 template <class Now>
 const commands::Row* CommandSearch::draw(std::uint8_t places, const Now& now, const char* mouse) {
-  if (std::exchange(is_asked_, false)) {
-    text_ = {};
-    chosen_ = 0;
-    ImGui::OpenPopup(title);
-  }
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(0.5F * all.x, 0.2F * all.y), ImGuiCond_Appearing,
                           ImVec2(0.5F, 0.0F));
@@ -78,9 +71,26 @@ const commands::Row* CommandSearch::draw(std::uint8_t places, const Now& now, co
   ImGui::EndPopup();
   return taken;
 }
-template const commands::Row* CommandSearch::draw(std::uint8_t, const commands::Situation&,
-                                                  const char*);
-template const commands::Row* CommandSearch::draw(std::uint8_t, const commands::EditFacts&,
-                                                  const char*);
+
+template <class Now>
+std::vector<const commands::Row*> CommandSearch::asked(std::uint8_t places, const Now& now,
+                                                       const char* mouse) {
+  std::vector<const commands::Row*> rows;
+  if (takes_keys())
+    for (const commands::Row& row : commands::table())
+      if ((row.places & places) != 0 && is_struck(row)) rows.push_back(&row);
+  if (const commands::Row* const found = draw(places, now, mouse)) rows.push_back(found);
+  for (const commands::Row* const row : rows)
+    if (row->name == "search" || row->name == "list keys") {
+      text_ = {};
+      chosen_ = 0;
+      ImGui::OpenPopup(title);
+    }
+  return rows;
+}
+template std::vector<const commands::Row*>
+CommandSearch::asked(std::uint8_t, const commands::Situation&, const char*);
+template std::vector<const commands::Row*>
+CommandSearch::asked(std::uint8_t, const commands::EditFacts&, const char*);
 
 } // namespace nendo::viewer

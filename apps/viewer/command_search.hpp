@@ -1,11 +1,12 @@
 #pragma once
-// A list of all commands of a window with their keys, found by words of their names and their help
-// (F3, ?).
+// The commands that a window is asked for: by their keys, or in a list of all commands, where they
+// are found by words of their names and their help (F3, ?).
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "commands/commands.hpp"
 
@@ -13,17 +14,18 @@ namespace nendo::viewer {
 
 class CommandSearch {
 public:
-  void open() noexcept { is_asked_ = true; }
-  /// Draws the list, if it is open, and below it `mouse`, the mouse actions of the window. `now` is
-  /// a commands::Situation or, for a timeline, commands::EditFacts. Returns the row that was
-  /// chosen; null: none.
+  /// Handles keys, and draws the list, if it is open, with `mouse`, the mouse actions of the
+  /// window, below it. `now` is a commands::Situation or, for a timeline, commands::EditFacts.
+  /// Returns the rows of one of the places that were asked for since the last picture.
+  template <class Now>
+  std::vector<const commands::Row*> asked(std::uint8_t places, const Now& now, const char* mouse);
+
+private:
   template <class Now>
   const commands::Row* draw(std::uint8_t places, const Now& now, const char* mouse);
 
-private:
   std::array<char, 64> text_{};
   std::size_t chosen_ = 0; ///< an index of the shown rows
-  bool is_asked_ = false;
 };
 
 /// Returns whether each word of `text` is in the row's name or help, whatever its case.

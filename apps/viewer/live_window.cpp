@@ -25,9 +25,9 @@ std::array<double, 5> reach_of(const flow::Frame& frame) {
 } // namespace
 
 LiveWindow::LiveWindow(std::shared_ptr<SceneWindow> window)
-    : window_(std::move(window)), panel_(std::make_unique<Panel>()),
-      editor_(std::make_unique<PuppetEditor>()), tool_(std::make_unique<PuppetTool>()),
-      marks_(std::make_unique<PuppetMarks>()) {}
+    : window_(std::move(window)), editor_(std::make_unique<PuppetEditor>()),
+      tool_(std::make_unique<PuppetTool>()), marks_(std::make_unique<PuppetMarks>()),
+      panel_(std::make_unique<Panel>(*window_, *editor_)) {}
 
 LiveWindow::~LiveWindow() = default;
 
@@ -47,7 +47,6 @@ void LiveWindow::set_model(const deform::BlockLayout& layout, const render::Scen
 
 Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& gauges) {
   const HostTime begin = HostClock::now();
-  Commands commands;
   if (fresh) {
     holds_.follow(frame);
     panel_->follow(frame, gauges.rate_hz);
@@ -63,12 +62,12 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
   if ((editor_->is_on() || editor_->has_masks()) && !editor_->is_dragging())
     for (const render::Surface& veil : marks_->veils(*editor_, *builder_))
       window_->add(veil);
-  if (!move_hand(frame, commands) && !edit_puppet()) window_->move_camera();
-  draw_panel(frame, gauges, commands);
+  if (!move_hand(frame) && !edit_puppet()) window_->move_camera();
+  panel_->draw(frame, gauges);
   show_model(frame);
   // A puppet that was begun here is played by hands that had nothing to hold.
   const bool begins = !std::exchange(plays_, frame.function_count > 0) && plays_;
-  if (begins && frame.puppet > 0 && !frame.held) commands.emplace_back(flow::Request::grab);
+  if (begins && frame.puppet > 0 && !frame.held) panel_->commands.emplace_back(flow::Request::grab);
   const HostTime prepared = HostClock::now();
   window_->end_picture();
   const HostTime end = HostClock::now();
@@ -77,8 +76,16 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
     picture_times_.preparing.record(prepared - begin);
     picture_times_.whole.record(end - begin);
   }
-  if (window_->take_close_request()) commands.emplace_back(flow::EndRun{});
-  return commands;
+  if (window_->take_close_request()) panel_->commands.emplace_back(flow::EndRun{});
+  return std::exchange(panel_->commands, {});
+}
+
+void LiveWindow::show_hints() noexcept {
+  panel_->hints = true;
+}
+
+bool LiveWindow::has_hints() const noexcept {
+  return panel_->hints;
 }
 
 const std::string& LiveWindow::message() const noexcept {
@@ -109,7 +116,7 @@ bool LiveWindow::edit_puppet() {
 }
 
 // True: the mouse holds a hand, and does nothing else.
-bool LiveWindow::move_hand(const flow::Frame& frame, Commands& commands) {
+bool LiveWindow::move_hand(const flow::Frame& frame) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantCaptureMouse) return false;
   const render::Camera camera = window_->stage_camera();
@@ -126,7 +133,8 @@ bool LiveWindow::move_hand(const flow::Frame& frame, Commands& commands) {
     hand_mover_.shift(camera, dx, dy, size.height);
   }
   hand_mover_.push(camera, static_cast<double>(io.MouseWheel));
-  if (dx != 0.0 || dy != 0.0 || io.MouseWheel != 0.0F) commands.emplace_back(hand_mover_.move());
+  if (dx != 0.0 || dy != 0.0 || io.MouseWheel != 0.0F)
+    panel_->commands.emplace_back(hand_mover_.move());
   return true;
 }
 

@@ -59,9 +59,9 @@ public:
   PuppetEditor& editor() noexcept { return *editor_; }
 
   /// Shows hints over the picture until the user closes them.
-  void show_hints() noexcept { hints_ = true; }
+  void show_hints() noexcept;
   /// Returns whether hints are shown.
-  bool has_hints() const noexcept { return hints_; }
+  bool has_hints() const noexcept;
   /// Returns the message in the status bar: the report, or a command's refusal.
   const std::string& message() const noexcept;
   /// Returns the settings that the panel shows.
@@ -74,18 +74,16 @@ private:
   struct Panel;
   bool edit_puppet();
   void show_model(const flow::Frame& frame);
-  bool move_hand(const flow::Frame& frame, Commands& commands);
-  void draw_panel(const flow::Frame& frame, const Gauges& gauges, Commands& commands);
+  bool move_hand(const flow::Frame& frame);
 
   std::shared_ptr<SceneWindow> window_;
-  std::unique_ptr<Panel> panel_;
   std::unique_ptr<PuppetEditor> editor_;
   std::unique_ptr<PuppetTool> tool_;
   std::unique_ptr<PuppetMarks> marks_;
+  std::unique_ptr<Panel> panel_;
   std::optional<render::SceneBuilder> builder_;
   bool shows_loop_ = true; ///< otherwise the editor's model
   bool plays_ = false;     ///< the loop has a puppet
-  bool hints_ = false;
   render::HoldTracker holds_;
   render::SceneFrame scene_frame_;
   HandMover hand_mover_;

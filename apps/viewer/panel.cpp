@@ -10,7 +10,6 @@
 
 #include "viewer/command_widgets.hpp"
 #include "viewer/controls.hpp"
-#include "viewer/hints.hpp"
 #include "viewer/puppet_tool.hpp"
 #include "viewer/status_bar.hpp"
 #include "viewer/theme.hpp"
@@ -39,32 +38,13 @@ std::vector<float> bends_of(const hand::JointAngles& angles) {
 
 void chart(const char* name, const char* help, const Strip& strip, const char* unit) {
   char words[64];
-  std::snprintf(words, sizeof words, "%s, most %.2f %s", name, static_cast<double>(strip.most()),
-                unit);
+  const float most = *std::max_element(strip.begin(), strip.end());
+  std::snprintf(words, sizeof words, "%s, most %.2f %s", name, static_cast<double>(most), unit);
   ImGui::PushID(name);
-  ImGui::PlotLines("##chart", strip.data(), strip.size(), strip.oldest(), words, 0.0F,
-                   std::max(1.0F, strip.most()),
-                   ImVec2(ImGui::GetContentRegionAvail().x, em(3.0F)));
+  ImGui::PlotLines("##chart", strip.data(), static_cast<int>(strip.size()), 0, words, 0.0F,
+                   std::max(1.0F, most), ImVec2(ImGui::GetContentRegionAvail().x, em(3.0F)));
   ImGui::PopID();
   show_text(help);
-}
-
-/// Returns the metres of a pixel at the model under the mouse or, beside it, at what the camera
-/// looks at.
-double metres_of_pixel(const flow::Frame& frame, const SceneWindow& window,
-                       const PuppetEditor& editor) {
-  const double units = frame.units_per_metre;
-  const deform::Points& rest = editor.model().vertices;
-  deform::Mesh shape = editor.seen();
-  if (!editor.is_on() && rest.cols() > 0) {
-    const deform::BlockLayout layout(rest);
-    if (frame.shape.block_count() == layout.block_count())
-      layout.unpack(frame.shape, shape.vertices);
-  }
-  const render::Camera camera = window.stage_camera();
-  const auto hit = hit_of_mouse(window, units, shape, rest);
-  const Eigen::Vector3d place = hit ? Eigen::Vector3d(hit->at / units) : camera.target;
-  return way_in_picture(camera, place, 1.0, 0.0, window.scene_size().height).norm();
 }
 
 /// Returns whether the window is wide enough for a panel at its right.
@@ -72,18 +52,11 @@ bool is_wide() {
   return ImGui::GetIO().DisplaySize.x > em(60.0F);
 }
 
-/// Undoes, or does again, all steps up to the one with that number; 0: also the first of the list.
-void go_to_step(const flow::StepList& list, std::size_t at, Commands& commands) {
-  for (std::size_t step = list.undoable + (list.in_hand ? 1 : 0); step > at; --step)
-    commands.emplace_back(Request::undo);
-  for (std::size_t step = list.undoable; step < at; ++step)
-    commands.emplace_back(Request::redo);
-}
-
 } // namespace
 
-float Strip::most() const noexcept {
-  return *std::max_element(values_.begin(), values_.end());
+void Strip::add(float value) noexcept {
+  std::shift_left(begin(), end(), 1);
+  back() = value;
 }
 
 void LiveWindow::Panel::follow(const flow::Frame& frame, double rate_hz) {
@@ -96,19 +69,18 @@ void LiveWindow::Panel::follow(const flow::Frame& frame, double rate_hz) {
       static_cast<float>(std::abs(static_cast<double>(ms(frame.since_last)) - 1e3 / rate_hz)));
 }
 
-void LiveWindow::Panel::buttons_of(commands::Buttons group, const commands::Situation& now,
-                                   Commands& commands) {
+void LiveWindow::Panel::buttons_of(commands::Buttons group, const commands::Situation& now) {
   constexpr int in_line = 2;
   const float width = share_of_line(in_line);
   int column = 0;
   for (const commands::Row& row : commands::table()) {
     if (row.group != group || (row.is_shown != nullptr && !row.is_shown(now))) continue;
     if (column++ % in_line != 0) ImGui::SameLine();
-    if (row_button(row, now, width)) ask(row, now, commands);
+    if (row_button(row, now, width)) ask(row, now);
   }
 }
 
-void LiveWindow::Panel::parts(SceneWindow& window) {
+void LiveWindow::Panel::parts() {
   render::SceneParts& shown = window.parts();
   const std::array boxes{
       std::pair{"hands", &shown.hands},      std::pair{"bones", &shown.bones},
@@ -136,7 +108,15 @@ void LiveWindow::Panel::follow_settings(const flow::LoopSettings& current) {
   if (pending.follow(current)) settings.follow(pending);
 }
 
-void LiveWindow::Panel::history(const flow::Frame& frame, Commands& commands) {
+/// Undoes, or does again, all steps up to the one with that number; 0: also the first of the list.
+void LiveWindow::Panel::go_to_step(const flow::StepList& list, std::size_t at) {
+  for (std::size_t step = list.undoable + (list.in_hand ? 1 : 0); step > at; --step)
+    commands.emplace_back(Request::undo);
+  for (std::size_t step = list.undoable; step < at; ++step)
+    commands.emplace_back(Request::redo);
+}
+
+void LiveWindow::Panel::history(const flow::Frame& frame) {
   if (!section("History", "The steps so far; a click goes to one.", true)) return;
   const flow::StepList& list = frame.steps;
   const std::size_t hidden =
@@ -157,7 +137,7 @@ void LiveWindow::Panel::history(const flow::Frame& frame, Commands& commands) {
     if (is_undone)
       ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
     const bool is_present = at == list.undoable;
-    if (ImGui::Selectable(words, is_present)) go_to_step(list, at, commands);
+    if (ImGui::Selectable(words, is_present)) go_to_step(list, at);
     note_control("step " + std::to_string(at), words);
     show_text("Undoes, or does again, all steps up to here.");
     if (is_present && std::exchange(history_shown, list.version) != list.version)
@@ -207,37 +187,33 @@ void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) {
   }
 }
 
-void LiveWindow::Panel::sections(const flow::Frame& frame, const Gauges& gauges,
-                                 SceneWindow& window, PuppetEditor& editor, Commands& commands) {
+void LiveWindow::Panel::sections(const flow::Frame& frame, const Gauges& gauges) {
   const commands::Situation now{frame, gauges.facts};
   const auto draw_puppet = [&] {
-    if (section("Puppet", "What each finger moves, as points on the model.", true))
-      Panel::puppet(editor, frame, commands);
+    if (section("Puppet", "What each finger moves, as points on the model.", true)) puppet(frame);
   };
   // While a puppet is edited, nothing is needed as much as this.
   const bool edits = editor.is_on() && !editor.paints_masks();
   if (edits) draw_puppet();
   SettingControls::draw_modes(pending.now);
-  buttons_of(commands::Buttons::hands, now, commands);
+  buttons_of(commands::Buttons::hands, now);
   if (section("Tool", "The settings that have an effect in this mode.", true)) {
     settings.draw(pending.now);
-    masks(editor, now, commands);
+    masks(now);
   }
-  if (!is_wide()) history(frame, commands);
+  if (!is_wide()) history(frame);
   if (section("Model", "Changes of the model itself, which undo reverts.", false))
-    buttons_of(commands::Buttons::model, now, commands);
+    buttons_of(commands::Buttons::model, now);
   if (!edits) draw_puppet();
   if (frame.clay.is_clay && section("Contact", "Where the hands touch the clay.", true))
-    Panel::clay(frame);
-  if (section("View", "What is drawn besides the model.", false)) parts(window);
+    clay(frame);
+  if (section("View", "What is drawn besides the model.", false)) parts();
   if (section("Gloves", "The devices of the hands, and their joints.", false)) hands(frame, gauges);
   if (section("Timing", "How even the loop and the pictures are.", false)) timing(frame);
 }
 
-void LiveWindow::Panel::draw(const flow::Frame& frame, const Gauges& gauges, SceneWindow& window,
-                             PuppetEditor& editor, Commands& commands) {
+void LiveWindow::Panel::draw_tools(const flow::Frame& frame, const Gauges& gauges, float top) {
   const float gap = em(gap_em), width = em(width_em);
-  const float top = gap + window.above_px();
   const float high = ImGui::GetIO().DisplaySize.y - status_bar_height() - gap - top;
   ImGui::SetNextWindowPos(ImVec2(gap, top));
   ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0.0F), ImVec2(width, std::max(em(3.0F), high)));
@@ -249,13 +225,12 @@ void LiveWindow::Panel::draw(const flow::Frame& frame, const Gauges& gauges, Sce
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
                        ImGuiWindowFlags_NoNavInputs | ImGuiWindowFlags_NoFocusOnAppearing);
   folded = ImGui::IsWindowCollapsed();
-  if (open) sections(frame, gauges, window, editor, commands);
+  if (open) sections(frame, gauges);
   ImGui::End();
-  if (!folded && is_wide()) draw_history(frame, top, commands);
 }
 
 /// At the window's right, where tools of any length leave it in sight.
-void LiveWindow::Panel::draw_history(const flow::Frame& frame, float top, Commands& commands) {
+void LiveWindow::Panel::draw_history(const flow::Frame& frame, float top) {
   const float width = em(12.0F);
   ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - em(gap_em), top), ImGuiCond_Always,
                           ImVec2(1.0F, 0.0F));
@@ -264,31 +239,84 @@ void LiveWindow::Panel::draw_history(const flow::Frame& frame, float top, Comman
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav |
                    ImGuiWindowFlags_NoFocusOnAppearing);
-  history(frame, commands);
+  history(frame);
   ImGui::End();
 }
 
-void LiveWindow::draw_panel(const flow::Frame& frame, const Gauges& gauges, Commands& commands) {
-  panel_->draw(frame, gauges, *window_, *editor_, commands);
-  if (!commands.empty()) panel_->note.clear();
-  panel_->keys({frame, gauges.facts}, *window_, *editor_, commands);
-  panel_->message = panel_->gesture.is_on() ? panel_->gesture.message()
-                    : panel_->note.empty()  ? gauges.report
-                                            : panel_->note;
-  draw_status_bar(frame, gauges, panel_->message);
-  if (hints_ && draw_hints(panel_->covered_px(), status_bar_height())) hints_ = false;
-  if (const auto change = panel_->pending.ask()) commands.push_back(*change);
+/// Over the picture, for the first minutes.
+void LiveWindow::Panel::draw_hints() {
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const float middle = (static_cast<float>(covered_px()) + all.x) / 2.0F;
+  const float bottom = all.y - status_bar_height() - em(gap_em);
+  ImGui::SetNextWindowPos(ImVec2(middle, bottom), ImGuiCond_Always, ImVec2(0.5F, 1.0F));
+  ImGui::Begin("hints", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoNav);
+  for (const auto& [keys, text] : commands::hints) {
+    ImGui::TextColored(accent(), "%s", keys.data());
+    ImGui::SameLine(em(4.0F));
+    ImGui::TextUnformatted(text.data());
+  }
+  ImGui::TextDisabled("F3 finds any command, ? lists the keys.");
+  ImGui::SameLine();
+  if (button("Do not show again")) hints = false;
+  show_text("Closes these hints for good.");
+  ImGui::End();
 }
 
-void LiveWindow::Panel::ask(const commands::Row& row, const commands::Situation& now,
-                            Commands& commands) {
+void LiveWindow::Panel::draw(const flow::Frame& frame, const Gauges& gauges) {
+  const float top = em(gap_em) + window.above_px();
+  draw_tools(frame, gauges, top);
+  if (!folded && is_wide()) draw_history(frame, top);
+  if (!commands.empty()) note.clear();
+  const commands::Situation now{frame, gauges.facts};
+  if (gesture.is_on()) {
+    gesture.follow(); // which takes all keys
+  } else {
+    window.follow_view_keys();
+    for (const commands::Row* const row : search.asked(commands::in_window, now, mouse_words))
+      take(*row, now);
+  }
+  message = gesture.is_on() ? gesture.message() : note.empty() ? gauges.report : note;
+  draw_status_bar(frame, gauges, message);
+  if (hints) draw_hints();
+  if (const auto change = pending.ask()) commands.push_back(*change);
+}
+
+void LiveWindow::Panel::take(const commands::Row& row, const commands::Situation& now) {
+  if (row.is_for_run())
+    ask(row, now);
+  else if (!row.setting.empty())
+    begin_gesture(row, now);
+  else
+    execute(row.name);
+}
+
+void LiveWindow::Panel::ask(const commands::Row& row, const commands::Situation& now) {
   const commands::Answer answer = commands::press(row, now, pending);
   if (answer.command) commands.push_back(*answer.command);
   note = answer.refusal != nullptr ? answer.refusal : "";
 }
 
-void LiveWindow::Panel::begin_gesture(const commands::Row& row, const commands::Situation& now,
-                                      const SceneWindow& window, PuppetEditor& editor) {
+/// Returns the metres of a pixel at the model under the mouse or, beside it, at what the camera
+/// looks at.
+double LiveWindow::Panel::metres_of_pixel(const flow::Frame& frame) const {
+  const double units = frame.units_per_metre;
+  const deform::Points& rest = editor.model().vertices;
+  deform::Mesh shape = editor.seen();
+  if (!editor.is_on() && rest.cols() > 0) {
+    const deform::BlockLayout layout(rest);
+    if (frame.shape.block_count() == layout.block_count())
+      layout.unpack(frame.shape, shape.vertices);
+  }
+  const render::Camera camera = window.stage_camera();
+  const auto hit = hit_of_mouse(window, units, shape, rest);
+  const Eigen::Vector3d place = hit ? Eigen::Vector3d(hit->at / units) : camera.target;
+  return way_in_picture(camera, place, 1.0, 0.0, window.scene_size().height).norm();
+}
+
+void LiveWindow::Panel::begin_gesture(const commands::Row& row, const commands::Situation& now) {
   using flow::setting::brush_strength;
   const bool is_radius = row.setting == flow::setting::radius.name;
   const bool is_editor = is_radius && editor.is_on(); // of its brush or of its points
@@ -301,7 +329,7 @@ void LiveWindow::Panel::begin_gesture(const commands::Row& row, const commands::
                   [this](double strength) { pending.now.brush_strength = strength; });
     return;
   }
-  const double cm_of_pixel = 100.0 * metres_of_pixel(now.frame, window, editor);
+  const double cm_of_pixel = 100.0 * metres_of_pixel(now.frame);
   const auto begin = [&](double first_cm, const flow::Range& range, auto use) {
     gesture.begin({"radius", "cm", first_cm, range, 1, cm_of_pixel},
                   [first_cm, use](double cm) { use(cm / first_cm); });
@@ -309,7 +337,7 @@ void LiveWindow::Panel::begin_gesture(const commands::Row& row, const commands::
   if (is_editor) {
     const double radius = editor.brushes() ? editor.brush_radius() : editor.radius();
     begin(100.0 * radius / now.frame.units_per_metre, {0.1, 1000.0},
-          [&editor](double factor) { editor.multiply_radius(factor); });
+          [this](double factor) { editor.multiply_radius(factor); });
     return;
   }
   const auto& radii_m = pending.now.radius_m; // all keep their ratios to the largest
@@ -323,9 +351,7 @@ void LiveWindow::Panel::begin_gesture(const commands::Row& row, const commands::
 }
 
 /// Executes a command that concerns the window alone.
-void LiveWindow::Panel::execute(std::string_view name, SceneWindow& window, PuppetEditor& editor,
-                                Commands& commands) {
-  if (name == "search" || name == "list keys") search.open();
+void LiveWindow::Panel::execute(std::string_view name) {
   window.execute(name);
   if (name == "fold panel") fold_asked = true;
   if (name == "edit puppet") editor.turn(!editor.is_on());
@@ -340,27 +366,6 @@ void LiveWindow::Panel::execute(std::string_view name, SceneWindow& window, Pupp
   if (name == "pin point") editor.toggle_pin();
   if (name == "delete point") editor.remove_point();
   if (name == "forget place") editor.forget_place();
-}
-
-void LiveWindow::Panel::keys(const commands::Situation& now, SceneWindow& window,
-                             PuppetEditor& editor, Commands& commands) {
-  const auto take = [&](const commands::Row& row) {
-    if (row.is_for_run())
-      ask(row, now, commands);
-    else if (!row.setting.empty())
-      begin_gesture(row, now, window, editor);
-    else
-      execute(row.name, window, editor, commands);
-  };
-  if (gesture.is_on()) {
-    gesture.follow(); // which takes all keys
-  } else if (takes_keys()) {
-    window.follow_view_keys();
-    for (const commands::Row& row : commands::table())
-      if ((row.places & commands::in_window) != 0 && is_struck(row)) take(row);
-  }
-  if (const commands::Row* const found = search.draw(commands::in_window, now, mouse_words))
-    take(*found);
 }
 
 } // namespace nendo::viewer

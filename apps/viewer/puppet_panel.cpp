@@ -59,7 +59,9 @@ void name_function(PuppetEditor& editor) {
   if (ImGui::IsItemDeactivatedAfterEdit()) editor.rename_function(name.data());
 }
 
-void edit_buttons(PuppetEditor& editor, Commands& commands) {
+} // namespace
+
+void LiveWindow::Panel::puppet_buttons() {
   bool mirrors = editor.rig().puppet().mirrors;
   if (check("mirror", mirrors)) editor.toggle_mirror();
   show_help("mirror puppet");
@@ -77,13 +79,10 @@ void edit_buttons(PuppetEditor& editor, Commands& commands) {
   show_help("save puppet");
 }
 
-} // namespace
-
-void LiveWindow::Panel::masks(PuppetEditor& editor, const commands::Situation& now,
-                              Commands& commands) {
+void LiveWindow::Panel::masks(const commands::Situation& now) {
   const commands::Row& symmetry = *commands::named("symmetry");
   bool symmetric = symmetry.is_on_in(now);
-  if (check("symmetry", symmetric)) ask(symmetry, now, commands);
+  if (check("symmetry", symmetric)) ask(symmetry, now);
   show_help(symmetry, now);
   if (editor.rig().puppet().is_played()) return; // whose masks are edited with it
   ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x / 2.0F);
@@ -91,20 +90,20 @@ void LiveWindow::Panel::masks(PuppetEditor& editor, const commands::Situation& n
   if (check("paint masks", brushes)) editor.toggle_masks();
   show_help("paint masks", "Paint what stays; shift erases.");
   const commands::Row& clear = *commands::named("mask clear");
-  if (row_button(clear, now, share_of_line(2))) ask(clear, now, commands);
+  if (row_button(clear, now, share_of_line(2))) ask(clear, now);
   ImGui::SameLine();
   const commands::Row& invert = *commands::named("mask invert");
-  if (row_button(invert, now, share_of_line(1))) ask(invert, now, commands);
+  if (row_button(invert, now, share_of_line(1))) ask(invert, now);
   if (editor.brushes()) ImGui::TextWrapped("%s", editor.message().c_str());
 }
 
-void LiveWindow::Panel::puppet(PuppetEditor& editor, const flow::Frame& frame, Commands& commands) {
+void LiveWindow::Panel::puppet(const flow::Frame& frame) {
   const bool is_on = editor.is_on() && !editor.paints_masks();
   if (button(is_on ? "Play the puppet" : "Edit the puppet", share_of_line(1))) editor.turn(!is_on);
   show_help("edit puppet", "Click, bend a finger, drag: what each finger does.");
   if (!editor.is_on() || editor.paints_masks()) return;
   if (!editor.message().empty()) ImGui::TextWrapped("%s", editor.message().c_str());
-  edit_buttons(editor, commands);
+  puppet_buttons();
   const double radius = editor.brushes() ? editor.brush_radius() : editor.radius();
   ImGui::Text("%s, radius %.1f cm", editor.brushes() ? "brush" : "point",
               100.0 * radius / frame.units_per_metre);

@@ -407,6 +407,7 @@ void SceneWindow::execute(std::string_view name) {
 }
 
 void SceneWindow::follow_view_keys() {
+  if (!takes_keys()) return;
   for (const ViewChoice& choice : views)
     for (const int key : choice.keys)
       if (pressed(key)) camera_.view = ImGui::GetIO().KeyCtrl ? choice.other : choice.view;

@@ -90,21 +90,14 @@ struct TimelineWindow::Panel {
 
   /// Handles keys, and draws the list of commands.
   void keys(const TimelineView& view, SceneWindow& window, EditActions& actions) {
-    const auto take = [&](const commands::Row& row) {
-      if (row.name == "search" || row.name == "list keys") search.open();
-      window.execute(row.name);
+    window.follow_view_keys();
+    for (const auto* const row : search.asked(commands::in_timeline, view.facts, mouse_words)) {
+      window.execute(row->name);
       // The same stroke of Esc may have cancelled a drag.
-      if (row.edit && !(row.edit->command == EditCommand::select_none && actions.drop))
-        actions.commands.push_back(row.edit->command);
-      if (row.name == "end edit") leaves = true;
-    };
-    if (takes_keys()) {
-      window.follow_view_keys();
-      for (const commands::Row& row : commands::table())
-        if ((row.places & commands::in_timeline) != 0 && is_struck(row)) take(row);
+      if (row->edit && !(row->edit->command == EditCommand::select_none && actions.drop))
+        actions.commands.push_back(row->edit->command);
+      if (row->name == "end edit") leaves = true;
     }
-    if (const auto* const found = search.draw(commands::in_timeline, view.facts, mouse_words))
-      take(*found);
   }
 
   /// Quits if it is `wanted` here or by the key. If there are unsaved changes, it asks first.
