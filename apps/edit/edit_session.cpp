@@ -117,10 +117,6 @@ void EditSession::handle(const viewer::EditActions& actions) {
   for (const EditCommand command : actions.commands)
     handle(command);
   follow_history();
-  // Who wanted to save before, and could not, stays.
-  const bool saves =
-      std::ranges::find(actions.commands, EditCommand::save) != actions.commands.end();
-  ended_ = ended_ || (actions.quit && !(saves && history_.is_modified()));
 }
 
 void EditSession::handle(EditCommand command) {

@@ -30,7 +30,8 @@ public:
   EditSession(const EditSession&) = delete;
   EditSession& operator=(const EditSession&) = delete;
 
-  /// Does all that a person asks for. What cannot be done is reported in the view's message.
+  /// Does all that a person asks for, but to quit. What cannot be done is reported in the view's
+  /// message.
   void handle(const viewer::EditActions& actions);
   /// Moves the play head on by the time that has passed.
   void advance(double elapsed_s);
@@ -47,7 +48,6 @@ public:
   timeline::ShapeCache::Progress progress() const { return cache_.progress(); }
 
   const timeline::EditHistory& history() const noexcept { return history_; }
-  bool has_ended() const noexcept { return ended_; } ///< the user quit
 
 private:
   using Edit = timeline::EditHistory::Edit;
@@ -90,7 +90,6 @@ private:
   CurvesOf curves_of_{-1.0, {}}; ///< those of the curves in view_
   viewer::TimelineView view_;
   render::SceneFrame scene_frame_;
-  bool ended_ = false;
 };
 
 } // namespace nendo::edit

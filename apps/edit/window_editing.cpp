@@ -30,7 +30,9 @@ Result<void> WindowEditing::show() {
   if (found.shape) window_->follow(found.shape->shape);
   const viewer::TimelineView& view = session_.view();
   is_settled_ = found.fresh && !view.computing;
-  session_.handle(timeline_window_.show(view, session_.scene_frame()));
+  const viewer::EditActions actions = timeline_window_.show(view, session_.scene_frame());
+  session_.handle(actions);
+  quits_ = actions.quit;
   if (auto error = session_.progress().error) return *std::move(error);
   return {};
 }

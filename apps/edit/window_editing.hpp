@@ -25,6 +25,8 @@ public:
   void show_again();
   /// Returns whether the last picture was final: its shape is that of the play head.
   bool is_settled() const noexcept { return is_settled_; }
+  /// Returns whether the user has asked to quit, in the last picture.
+  bool quits() const noexcept { return quits_; }
   EditSession& session() noexcept { return session_; }
   const EditSession& session() const noexcept { return session_; }
 
@@ -35,6 +37,7 @@ private:
   std::shared_ptr<const flow::ModelVersion> model_; ///< the one that the window shows
   std::optional<HostTime> before_;
   bool is_settled_ = false;
+  bool quits_ = false;
 };
 
 } // namespace nendo::edit

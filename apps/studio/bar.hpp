@@ -16,7 +16,7 @@ namespace nendo::studio {
 /// What the bar shows.
 struct BarState {
   Screen now = Screen::start;
-  std::string file; ///< the model that is shaped, or the timeline; empty: none
+  std::string file{}; ///< the model that is shaped, or the timeline; empty: none
   bool is_modified = false;
   bool is_shaping = false; ///< a run has a shape, which can be saved
 };

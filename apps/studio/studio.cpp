@@ -67,10 +67,9 @@ public:
 
 private:
   void show_one() {
-    const bool is_timeline = screen_ == Screen::timeline;
-    bar_.set({screen_, is_timeline ? timeline_.screen()->file() : "",
-              is_timeline && timeline_.is_modified(), false});
-    follow(is_timeline ? show_timeline() : calibration_ ? show_calibration() : show_start());
+    follow(screen_ == Screen::timeline ? show_timeline()
+           : calibration_              ? show_calibration()
+                                       : show_start());
     follow(bar_.take_wish());
     follow(timeline_.take_settled());
     if (window_->take_close_request()) follow(Quit{});
@@ -88,6 +87,7 @@ private:
   }
 
   Wish show_start() {
+    bar_.set({Screen::start});
     if (!start_)
       start_ = std::make_unique<StartScreen>(*window_,
                                              StartOptions{options_.gloves, options_.calibration});
@@ -95,15 +95,13 @@ private:
   }
 
   Wish show_timeline() {
-    const auto wish = timeline_.screen()->show();
-    if (wish && !std::holds_alternative<Quit>(*wish)) return *wish;
-    if (!wish) bar_.show_error(wish.error().message);
-    timeline_.close(); // whose window has asked about its edits
-    screen_ = Screen::start;
-    return wish ? *wish : Wish{};
+    const Wish wish = timeline_.show();
+    if (timeline_.screen() == nullptr) screen_ = Screen::start;
+    return wish;
   }
 
   Wish show_calibration() {
+    bar_.set({Screen::calibration});
     const auto wish = calibration_->show(*window_);
     if (!wish) bar_.show_error(wish.error().message);
     if (wish && !is_wish(*wish)) return {};
@@ -126,7 +124,8 @@ private:
     calibration_ = std::make_unique<CalibrationVisit>(*window_, glove);
   }
 
-  void show_timeline_tab() {
+  void enter_timeline() {
+    timeline_.enter();
     start_.reset();
     calibration_.reset();
     screen_ = Screen::timeline;
@@ -143,11 +142,7 @@ private:
   void go(const Go& there) {
     if (there.screen == Screen::shaping) next_ = Shape{};
     if (there.screen == Screen::puppet) next_ = Shape{{}, {}, "face"};
-    if (there.screen == Screen::timeline) {
-      if (timeline_.screen() == nullptr) timeline_.open("");
-      timeline_.screen()->show_again();
-      show_timeline_tab();
-    }
+    if (there.screen == Screen::timeline) enter_timeline();
     if (there.screen == Screen::calibration) calibrate(there.glove);
     if (there.screen != Screen::start) return;
     calibration_.reset();
@@ -155,11 +150,10 @@ private:
   }
 
   void open(const std::string& file) {
-    if (file.empty()) return bar_.ask_what_to_open();
     session::keep_recent_file(file);
     if (opens_in_timeline(file)) {
       timeline_.open(file);
-      return show_timeline_tab();
+      return enter_timeline();
     }
     if (file.ends_with(".toml"))
       next_ = Shape{{}, {}, file};

@@ -38,12 +38,7 @@ Screen StudioView::screen() const noexcept {
 
 void StudioView::update(const RunStatus& status, Asks& asks) {
   follow_recording(status);
-  if (shows_timeline_)
-    parts_.bar.set(
-        {Screen::timeline, timeline().screen()->file(), timeline().is_modified(), false});
-  else
-    parts_.bar.set({screen(), file_, status.saving->is_modified(status.frame), true});
-  show_screen(status, asks);
+  shows_timeline_ ? show_timeline(status, asks) : show_shaping(status, asks);
   if (const auto file = parts_.bar.take_save()) {
     if (saving_ == Saving::asked) saving_ = Saving::begun;
     if (file->empty())
@@ -57,8 +52,8 @@ void StudioView::update(const RunStatus& status, Asks& asks) {
 }
 
 /// Closing the window, and the key q, leave the program, and not only the run.
-void StudioView::show_screen(const RunStatus& status, Asks& asks) {
-  if (shows_timeline_) return show_timeline(status, asks);
+void StudioView::show_shaping(const RunStatus& status, Asks& asks) {
+  parts_.bar.set({screen(), file_, status.saving->is_modified(status.frame), true});
   Asks given;
   parts_.shaping->update(status, given);
   const bool is_ended = std::erase_if(given, ends_run) > 0;
@@ -67,15 +62,9 @@ void StudioView::show_screen(const RunStatus& status, Asks& asks) {
 }
 
 void StudioView::show_timeline(const RunStatus& status, Asks& asks) {
-  const auto wish = timeline().screen()->show();
-  if (wish && !is_wish(*wish)) return;
-  const bool quits = wish && std::holds_alternative<Quit>(*wish);
-  if (!wish) parts_.bar.show_error(wish.error().message);
-  if (!wish || quits) { // its window has asked about its edits
-    timeline().close();
-    go_to(Screen::shaping, status, asks);
-  }
-  if (wish) go(*wish, status, asks);
+  const Wish wish = timeline().show();
+  if (timeline().screen() == nullptr) go_to(Screen::shaping, status, asks);
+  if (is_wish(wish)) go(wish, status, asks);
 }
 
 /// The tab opens the new recording, unless edits of another one are unsaved.
@@ -118,7 +107,6 @@ void StudioView::go(const Wish& wish, const RunStatus& status, Asks& asks) {
       return go_to(there->screen, status, asks);
   if (!timeline().lets(wish)) return;
   if (const auto* const open = std::get_if<Open>(&wish)) {
-    if (open->file.empty()) return parts_.bar.ask_what_to_open();
     if (opens_in_timeline(open->file)) {
       timeline().open(open->file);
       session::keep_recent_file(open->file);
@@ -134,11 +122,10 @@ void StudioView::go_to(Screen screen, const RunStatus& status, Asks& asks) {
   const bool is_timeline = screen == Screen::timeline;
   // The recording that ends is the one to be shown.
   if (is_timeline && status.facts.recorded) asks.emplace_back(flow::SetRecording{false});
-  if (is_timeline && timeline().screen() == nullptr) timeline().open(recorded_);
   if (is_timeline && !shows_timeline_) {
     held_ = status.frame.held;
     if (held_) asks.emplace_back(flow::Request::release);
-    timeline().screen()->show_again();
+    timeline().enter(recorded_);
   }
   if (!is_timeline && shows_timeline_) {
     parts_.shaping->show_again(status);

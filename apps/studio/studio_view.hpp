@@ -39,7 +39,7 @@ public:
   const Wish& left_for() const noexcept { return left_for_; }
 
 private:
-  void show_screen(const session::RunStatus& status, session::Asks& asks);
+  void show_shaping(const session::RunStatus& status, session::Asks& asks);
   void show_timeline(const session::RunStatus& status, session::Asks& asks);
   void follow_recording(const session::RunStatus& status);
   void follow_saving(const session::RunStatus& status, session::Asks& asks);

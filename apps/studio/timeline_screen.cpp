@@ -93,7 +93,7 @@ Result<Wish> TimelineScreen::show() {
   }
   if (!editing_) return show_reading();
   if (const auto shown = editing_->show(); !shown) return shown.error();
-  return editing_->session().has_ended() ? Wish{Quit{}} : Wish{};
+  return editing_->quits() ? Wish{Quit{}} : Wish{};
 }
 
 } // namespace nendo::studio

@@ -30,8 +30,8 @@ public:
   TimelineScreen(std::shared_ptr<viewer::SceneWindow> window, std::string file);
   TimelineScreen(std::shared_ptr<viewer::SceneWindow> window, const FirstTimeline& first);
 
-  /// Draws one picture. Returns Quit when the user closes the window, which asks about unsaved
-  /// changes. Error: the file cannot be read or played.
+  /// Draws one picture. Returns Quit when the user closes the window. Error: the file cannot be
+  /// read or played.
   Result<Wish> show();
   /// Shows its model again, after something else was shown in the window.
   void show_again();

@@ -18,12 +18,30 @@ void TimelineTab::open(const FirstTimeline& first) {
   discarded_.reset();
 }
 
+void TimelineTab::enter(const std::string& usual) {
+  if (!screen_) open(usual);
+  screen_->show_again();
+}
+
+Wish TimelineTab::show() {
+  bar_.set({Screen::timeline, screen_->file(), is_modified(), false});
+  const auto wish = screen_->show();
+  if (wish) return *wish;
+  bar_.show_error(wish.error().message);
+  screen_.reset();
+  return {};
+}
+
 bool TimelineTab::has_edits_to_lose() const noexcept {
   return is_modified() && discarded_ != screen_->revision();
 }
 
 bool TimelineTab::lets(const Wish& wish) {
   const auto* const file = std::get_if<Open>(&wish);
+  if (file != nullptr && file->file.empty()) {
+    bar_.ask_what_to_open();
+    return false;
+  }
   const bool loses =
       std::holds_alternative<Quit>(wish) || (file != nullptr && opens_in_timeline(file->file));
   if (!loses || !has_edits_to_lose()) return true;

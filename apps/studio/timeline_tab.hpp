@@ -27,10 +27,15 @@ public:
   /// Replaces the screen by that of a file, or of no file yet.
   void open(const std::string& file);
   void open(const FirstTimeline& first);
-  void close() noexcept { screen_.reset(); }
+  /// To be called before show(), if something else was shown before. Without a screen, opens
+  /// `usual`; empty: no file yet.
+  void enter(const std::string& usual = {});
+  /// Draws one picture, with the bar. If it cannot be shown, the bar says why, and there is no
+  /// screen any more.
+  Wish show();
 
   /// Returns whether the wish loses no unsaved edits. Otherwise asks the user, and take_settled()
-  /// returns the wish later.
+  /// returns the wish later. Asks for the file that is to be opened, if the wish has none.
   bool lets(const Wish& wish);
   /// Returns the wish that waited for the answer, once the edits are saved or discarded. To be
   /// called in each picture, before other questions take the answer.

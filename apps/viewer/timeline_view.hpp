@@ -147,7 +147,7 @@ struct EditActions {
   bool drop = false;
   std::optional<Retiming> retiming;
   std::vector<EditCommand> commands;
-  bool quit = false; ///< applied last; saves only if `commands` has `save`
+  bool quit = false; ///< applied last
 };
 
 } // namespace nendo::viewer

@@ -20,8 +20,6 @@
 namespace nendo::viewer {
 namespace {
 
-constexpr const char* question = "Unsaved changes";
-
 constexpr const char* mouse_words =
     "drag on the strip scrubs, wheel zooms it, middle drag shifts it;\n"
     "a key: click selects, drag moves, ctrl drag copies;\n"
@@ -59,7 +57,6 @@ struct TimelineWindow::Panel {
   Retiming retiming{0.0, 0.0, 2.0};
   bool retiming_shown = false;
   CommandSearch search;
-  bool leaves = false;
   float blend = 0.0F;
   bool blends = false; ///< the mouse holds the slider
 
@@ -96,27 +93,8 @@ struct TimelineWindow::Panel {
       // The same stroke of Esc may have cancelled a drag.
       if (row->edit && !(row->edit->command == EditCommand::select_none && actions.drop))
         actions.commands.push_back(row->edit->command);
-      if (row->name == "end edit") leaves = true;
+      if (row->name == "end edit") actions.quit = true;
     }
-  }
-
-  /// Quits if it is `wanted` here or by the key. If there are unsaved changes, it asks first.
-  void leave(const TimelineView& view, bool wanted, EditActions& actions) {
-    const bool open = ImGui::IsPopupOpen(question);
-    wanted = std::exchange(leaves, false) || wanted;
-    if (wanted && !view.modified) actions.quit = true;
-    if (wanted && view.modified && !open) ImGui::OpenPopup(question);
-    if (!begin_question(question)) return;
-    ImGui::Text("Save the changes to %s?", view.file.c_str());
-    const bool save = ImGui::Button("Save and quit");
-    ImGui::SameLine();
-    const bool discard = ImGui::Button("Quit without saving");
-    ImGui::SameLine();
-    const bool stay = ImGui::Button("Stay") || pressed(GLFW_KEY_ESCAPE);
-    if (save) actions.commands.push_back(EditCommand::save);
-    actions.quit = actions.quit || save || discard;
-    if (save || discard || stay) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
   }
 
 private:
@@ -202,7 +180,7 @@ EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFr
                      actions);
   panel_->draw(view, window_->above_px(), actions);
   panel_->keys(view, *window_, actions);
-  panel_->leave(view, window_->take_close_request(), actions);
+  if (window_->take_close_request()) actions.quit = true;
   window_->end_picture();
   return actions;
 }

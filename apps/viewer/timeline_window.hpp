@@ -20,8 +20,7 @@ public:
   TimelineWindow& operator=(const TimelineWindow&) = delete;
 
   /// Draws one picture and waits for the screen, or for at most 8 ms if there is none. Ignores the
-  /// vertices of `scene_frame`. With unsaved changes, the window asks the user before it returns
-  /// `quit`.
+  /// vertices of `scene_frame`.
   EditActions show(const TimelineView& view, const render::SceneFrame& scene_frame);
 
   SceneWindow& scene_window() noexcept { return *window_; } ///< the caller sets model and shapes

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include <GLFW/glfw3.h>
 #include <doctest/doctest.h>
 
 #include "studio/seat.hpp"
@@ -33,8 +34,8 @@ struct Seat : test::StudioSeat {
     tab.open(
         FirstTimeline{"wave.nendo", out, *std::move(frames), timeline::KeyRef{Side::right, 3}});
     show = [this] {
-      bar.set({Screen::timeline, out, tab.is_modified(), false});
-      REQUIRE(tab.screen()->show());
+      tab.show();
+      REQUIRE(tab.screen() != nullptr);
     };
     show();
   }
@@ -93,6 +94,39 @@ TEST_SUITE("timeline_tab" * doctest::skip(!test::restraint_is_counted)) {
     CHECK(quits(seat.tab.take_settled()));
     CHECK_FALSE(seat.tab.is_modified());
     CHECK(std::filesystem::exists(seat.out));
+
+    seat.edit(viewer::EditCommand::mirror);
+    std::filesystem::remove_all(seat.folder.path()); // so that nothing can be saved there
+    REQUIRE_FALSE(seat.tab.lets(Quit{}));
+    seat.show();
+    seat.show();
+    seat.press("Save");
+    CHECK_FALSE(is_wish(seat.tab.take_settled()));
+    CHECK(seat.tab.is_modified());
+  }
+
+  TEST_CASE("the key q of the timeline asks to quit, and the tab asks about its edits") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Seat seat;
+    seat.edit(viewer::EditCommand::delete_key);
+    viewer::SimulatedInput input;
+    input.taps = {GLFW_KEY_Q};
+    seat.window->simulate(input);
+    const Wish wish = seat.tab.show();
+    REQUIRE(quits(wish));
+    CHECK_FALSE(seat.tab.lets(wish));
+    seat.window->simulate({});
+    seat.show();
+    seat.show();
+    const std::uint64_t revision = seat.tab.screen()->revision();
+    seat.key(GLFW_KEY_Y, false, true); // the question comes first
+    CHECK(seat.tab.screen()->revision() == revision);
+    seat.key(GLFW_KEY_ESCAPE); // stays
+    CHECK_FALSE(is_wish(seat.tab.take_settled()));
+    CHECK_FALSE(is_wish(seat.tab.show()));
+    seat.key(GLFW_KEY_Y, false, true);
+    CHECK(seat.tab.screen()->revision() != revision);
   }
 }
 
