@@ -355,10 +355,10 @@ void LiveWindow::Panel::execute(std::string_view name) {
   window.execute(name);
   if (name == "fold panel") fold_asked = true;
   if (name == "edit puppet") editor.turn(!editor.is_on());
-  if (name == "paint masks") editor.is_on() ? editor.toggle_brush() : editor.toggle_masks();
+  if (name == "paint masks") editor.toggle_brush();
   if (!editor.is_on()) return;
   if (editor.brushes() && !editor.rig().puppet().is_played()) {
-    if (name == "forget place") editor.toggle_masks();
+    if (name == "forget place") editor.toggle_brush();
     if (name == "delete point") commands.emplace_back(flow::SetMask{flow::MaskEdit::clear});
     return;
   }

@@ -32,17 +32,9 @@ std::size_t number_named(const List& list, const std::string& name) noexcept {
   return found == list.end() ? PuppetEditor::none : static_cast<std::size_t>(found - list.begin());
 }
 
-/// The name that the second puppet has and the first has not; empty if there is none. Of twins, it
-/// is the one on the side of `x`.
-template <class List>
-std::string new_name(const List& before, const List& after, double x) {
-  std::string name;
-  for (const auto& one : after) {
-    if (number_named(before, one.name) != PuppetEditor::none) continue;
-    const bool is_right = one.name.ends_with("Right");
-    if (name.empty() || (x < 0.0) == is_right) name = one.name;
-  }
-  return name;
+bool moves(const puppet::Function& function, std::size_t point) noexcept {
+  return std::any_of(function.moves.begin(), function.moves.end(),
+                     [&](const puppet::Move& move) { return move.point == point; });
 }
 
 } // namespace
@@ -96,7 +88,7 @@ void PuppetEditor::follow(const RigPointer& current, const flow::Frame& frame) {
     }
   }
   if (is_live()) follow_shape(frame);
-  if (!is_on_ || only_masks_) return;
+  if (!is_on() || paints_masks()) return;
   look_at_hands(frame);
   end_scaling(false);
 }
@@ -107,7 +99,7 @@ bool PuppetEditor::has_masks() const noexcept {
 }
 
 bool PuppetEditor::is_live() const noexcept {
-  return only_masks_ || (!is_on_ && has_masks());
+  return paints_masks() || (!is_on() && has_masks());
 }
 
 /// What is held does not move, so that a little later is soon enough; and the veils of a large
@@ -143,8 +135,7 @@ void PuppetEditor::turn(bool on) {
   forget_place();
   end_stroke();
   drag_.reset();
-  brushes_ = only_masks_ = false;
-  is_on_ = on;
+  edits_ = on ? Edits::points : Edits::nothing;
   message_ = on && rig_->puppet().points.empty()
                  ? "Click a place of the model that a finger shall move."
                  : "";
@@ -152,7 +143,7 @@ void PuppetEditor::turn(bool on) {
 }
 
 const deform::BlockShape* PuppetEditor::shape() {
-  if (only_masks_) return nullptr;
+  if (paints_masks()) return nullptr;
   if (!shapes_ && !rig_->puppet().points.empty()) {
     auto made = shapes_of(rig_);
     if (made) shapes_ = *std::move(made);
@@ -162,13 +153,7 @@ const deform::BlockShape* PuppetEditor::shape() {
     return &*plain_;
   }
   deform::Points places = rig_->starts();
-  if (drag_ && drag_->turn) {
-    places += drag_->vectors;
-  } else if (drag_) {
-    places += rig_->vectors_of(drag_->function);
-    places.col(static_cast<Index>(drag_->point)) =
-        rig_->starts().col(static_cast<Index>(drag_->point)) + drag_->way;
-  }
+  if (drag_) places += drag_->vectors;
   return &shapes_->blocks_with(places);
 }
 
@@ -198,8 +183,7 @@ std::size_t PuppetEditor::point() const noexcept {
 std::size_t PuppetEditor::mover_of(std::size_t point) const noexcept {
   const auto& functions = rig_->puppet().functions;
   for (std::size_t at = 0; at < functions.size(); ++at)
-    for (const puppet::Move& move : functions[at].moves)
-      if (move.point == point) return at;
+    if (moves(functions[at], point)) return at;
   return none;
 }
 
@@ -211,14 +195,20 @@ std::size_t PuppetEditor::function() const noexcept {
 void PuppetEditor::choose_point(std::size_t point) {
   end_scaling(true);
   point_name_ = point == none ? "" : rig_->puppet().points[point].name;
-  const std::size_t function = number_named(rig_->puppet().functions, function_name_);
+  const auto& functions = rig_->puppet().functions;
+  const std::size_t function = number_named(functions, function_name_);
   const std::size_t mover = mover_of(point);
-  const bool moves_it = function != none &&
-                        std::any_of(rig_->puppet().functions[function].moves.begin(),
-                                    rig_->puppet().functions[function].moves.end(),
-                                    [&](const puppet::Move& move) { return move.point == point; });
-  if (!moves_it && mover != none) function_name_ = rig_->puppet().functions[mover].name;
+  const bool moves_it = function != none && moves(functions[function], point);
+  if (!moves_it && mover != none) function_name_ = functions[mover].name;
   ++version_;
+}
+
+/// Of twins, it is the one where the user has clicked.
+void PuppetEditor::choose_new_point() {
+  Index nearest = 0;
+  (rig_->starts().colwise() - pending_->at).colwise().squaredNorm().minCoeff(&nearest);
+  pending_.reset();
+  choose_point(static_cast<std::size_t>(nearest));
 }
 
 void PuppetEditor::choose_function(std::size_t function) {
@@ -256,22 +246,17 @@ void PuppetEditor::choose_input(const HandSignal& input, double travel) {
     return;
   }
   const Vector3d way = way_of_radius * new_radius_ * pending_->normal;
-  const RigPointer before = rig_;
   if (!apply(puppet::with_function(*rig_, {pending_->at, new_radius_}, way, input, travel), ""))
     return;
-  const double x = pending_->at.x();
-  point_name_ = new_name(before->puppet().points, rig_->puppet().points, x);
-  function_name_ = new_name(before->puppet().functions, rig_->puppet().functions, x);
-  pending_.reset();
+  function_name_.clear();
+  choose_new_point();
   message_ = input.name() + " moves " + point_name_ + ". Drag it to where it shall go.";
 }
 
 void PuppetEditor::toggle_pin() {
   if (pending_) {
-    const RigPointer before = rig_;
     if (!apply(puppet::with_pin(*rig_, {pending_->at, new_radius_}), "")) return;
-    point_name_ = new_name(before->puppet().points, rig_->puppet().points, pending_->at.x());
-    pending_.reset();
+    choose_new_point();
     message_ = point_name_ + " stays where it is.";
     return;
   }
@@ -313,11 +298,11 @@ void PuppetEditor::begin_drag(std::size_t point) {
   choose_point(point);
   const std::size_t function = this->function();
   if (function == none || rig_->puppet().points[point].is_pin) return;
-  drag_ = Drag{point, function, way_of(point)};
+  drag_ = Drag{point, function, rig_->vectors_of(function)};
 }
 
 void PuppetEditor::drag(const Vector3d& way) {
-  if (drag_) drag_->way += way;
+  if (drag_) drag_->vectors.col(static_cast<Index>(drag_->point)) += way;
 }
 
 /// The nearest pin: a limb turns about its root.
@@ -350,7 +335,6 @@ void PuppetEditor::turn_by(double degrees) {
   puppet::AxisTurn& turn = *drag_->turn;
   turn.degrees = std::clamp(turn.degrees + degrees, -360.0, 360.0);
   drag_->vectors = puppet::vectors_with_turn(*rig_, drag_->function, drag_->point, turn);
-  drag_->way = drag_->vectors.col(static_cast<Index>(drag_->point));
 }
 
 const puppet::AxisTurn* PuppetEditor::dragged_turn() const noexcept {
@@ -370,14 +354,14 @@ void PuppetEditor::end_drag() {
     return;
   }
   const Vector3d before = rig_->vectors_of(done.function).col(static_cast<Index>(done.point));
-  if (done.way == before) return;
-  apply(puppet::with_move(*rig_, done.function, done.point, done.way),
+  const Vector3d way = done.vectors.col(static_cast<Index>(done.point));
+  if (way == before) return;
+  apply(puppet::with_move(*rig_, done.function, done.point, way),
         rig_->puppet().functions[done.function].name + " moves " + point_name_ + " there.");
 }
 
 Vector3d PuppetEditor::way_of(std::size_t point) const {
-  if (drag_ && drag_->turn) return drag_->vectors.col(static_cast<Index>(point));
-  if (drag_ && drag_->point == point) return drag_->way;
+  if (drag_) return drag_->vectors.col(static_cast<Index>(point));
   const std::size_t chosen = function();
   if (chosen == none) return Vector3d::Zero();
   return rig_->vectors_of(chosen).col(static_cast<Index>(point));
@@ -393,7 +377,7 @@ void PuppetEditor::multiply_radius(double factor) {
     return std::clamp(radius * factor, 0.003 * diagonal, 2.0 * diagonal);
   };
   ++version_;
-  if (brushes_) {
+  if (brushes()) {
     brush_radius_ = within(brush_radius_);
     return;
   }
@@ -402,52 +386,37 @@ void PuppetEditor::multiply_radius(double factor) {
     new_radius_ = within(new_radius_);
     return;
   }
-  if (!scaling_ || scaling_->point != chosen)
-    scaling_ = Scaling{chosen, rig_->puppet().points[chosen].radius, {}};
-  scaling_->radius = within(scaling_->radius);
-  scaling_->last = HostClock::now();
+  scaling_ = Scaling{within(radius()), HostClock::now()};
 }
 
 void PuppetEditor::end_scaling(bool at_once) {
   if (!scaling_ || (!at_once && HostClock::now() - scaling_->last < wheel_rest)) return;
-  const Scaling done = *std::exchange(scaling_, {});
-  if (done.point < rig_->puppet().points.size())
-    apply(puppet::with_radius(*rig_, done.point, done.radius), "");
+  const double radius = std::exchange(scaling_, {})->radius;
+  if (point() != none) apply(puppet::with_radius(*rig_, point(), radius), "");
 }
 
 double PuppetEditor::radius() const noexcept {
   const std::size_t chosen = pending_ ? none : point();
   if (chosen == none) return new_radius_;
-  return scaling_ && scaling_->point == chosen ? scaling_->radius
-                                               : rig_->puppet().points[chosen].radius;
+  return scaling_ ? scaling_->radius : rig_->puppet().points[chosen].radius;
 }
 
 void PuppetEditor::toggle_brush() {
-  if (!rig_->puppet().is_played()) return toggle_masks();
-  forget_place();
-  brushes_ = !brushes_;
-  message_ = brushes_
-                 ? "Drag over what shall stay as it is; with shift, over what may move again. The "
-                   "wheel changes the brush."
-                 : "";
-  ++version_;
-}
-
-void PuppetEditor::toggle_masks() {
   if (loaded_.vertices.cols() == 0) return; // there is nothing to paint yet
-  const bool begins = !brushes_;
-  turn(begins);
-  brushes_ = only_masks_ = begins;
-  if (begins)
-    message_ =
-        "Drag over what fingertips shall leave as it is; with shift, over what may move again. "
-        "The wheel changes the brush.";
+  if (edits_ == Edits::masks) return turn(false);
+  if (edits_ == Edits::masks_of_puppet) return turn(true);
+  const bool is_of_puppet = is_on() && rig_->puppet().is_played();
+  turn(true);
+  edits_ = is_of_puppet ? Edits::masks_of_puppet : Edits::masks;
+  message_ = "Drag over what " +
+             std::string(is_of_puppet ? "shall stay as it is" : "fingertips shall leave as it is") +
+             "; with shift, over what may move again. The wheel changes the brush.";
 }
 
 /// Masks are of the model before it was shaped.
 void PuppetEditor::paint(const SurfaceHit& hit, bool erases) {
   Vector3d at = hit.at;
-  if (only_masks_ && !hit.parts.isZero(0.0)) {
+  if (paints_masks() && !hit.parts.isZero(0.0)) {
     at.setZero();
     for (std::size_t k = 0; k < hit.corners.size(); ++k)
       at += hit.parts[static_cast<Index>(k)] * shown_.vertices.col(hit.corners[k]);

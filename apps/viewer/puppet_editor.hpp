@@ -33,7 +33,7 @@ public:
   /// Returns, once, the puppet with which the loop must continue; null: no change.
   RigPointer take() { return std::exchange(to_loop_, nullptr); }
 
-  bool is_on() const noexcept { return is_on_; }
+  bool is_on() const noexcept { return edits_ != Edits::nothing; }
   void turn(bool on);
   /// Returns the shape to show: the rest shape, or, during a drag, the dragged function at 1. Null:
   /// the hands' shape, while masks of fingertips are painted.
@@ -88,12 +88,11 @@ public:
 
   // The brush for masks.
 
-  bool brushes() const noexcept { return brushes_; }
+  bool brushes() const noexcept { return edits_ >= Edits::masks_of_puppet; }
+  /// Begins or ends painting masks: of the puppet that is edited, or else of fingertips.
   void toggle_brush();
-  /// Begins or ends painting masks of fingertips.
-  void toggle_masks();
-  /// Returns whether the editor is on only for painting these masks.
-  bool paints_masks() const noexcept { return only_masks_; }
+  /// Returns whether the editor is on only for masks of fingertips.
+  bool paints_masks() const noexcept { return edits_ == Edits::masks; }
   /// Returns whether fingertips have masks. They are always drawn.
   bool has_masks() const noexcept;
   void paint(const SurfaceHit& hit, bool erases);
@@ -111,15 +110,14 @@ private:
   struct Drag {
     std::size_t point = none;
     std::size_t function = none;
-    Eigen::Vector3d way;
-    std::optional<puppet::AxisTurn> turn{}; ///< replaces the way
-    deform::Points vectors{};               ///< displacements by the rotation
+    deform::Points vectors; ///< displacements of all points, with the drag so far
+    std::optional<puppet::AxisTurn> turn{};
   };
   struct Scaling {
-    std::size_t point = none;
-    double radius = 1.0;
+    double radius = 1.0; ///< the chosen point's
     HostTime last{};
   };
+  enum class Edits : std::uint8_t { nothing, points, masks_of_puppet, masks };
   bool is_live() const noexcept;
   void follow_shape(const flow::Frame& frame);
   bool apply(Result<puppet::Puppet> edited, const std::string& done);
@@ -127,6 +125,7 @@ private:
   Result<std::unique_ptr<puppet::RigShapes>> shapes_of(const RigPointer& rig) const;
   void look_at_hands(const flow::Frame& frame);
   void end_scaling(bool at_once);
+  void choose_new_point();
   std::size_t mover_of(std::size_t point) const noexcept;
   Eigen::Vector3d pivot_of(std::size_t point) const;
 
@@ -148,8 +147,8 @@ private:
   std::optional<Scaling> scaling_;
   std::vector<Eigen::Vector3d> stroke_;
   double new_radius_ = 1.0, brush_radius_ = 1.0;
-  bool is_on_ = false, brushes_ = false, erases_ = false;
-  bool only_masks_ = false; ///< on only for masks of fingertips
+  Edits edits_ = Edits::nothing;
+  bool erases_ = false;
   std::uint64_t version_ = 1, model_version_ = 1;
   std::string message_;
 };

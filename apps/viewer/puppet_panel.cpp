@@ -87,7 +87,7 @@ void LiveWindow::Panel::masks(const commands::Situation& now) {
   if (editor.rig().puppet().is_played()) return; // whose masks are edited with it
   ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x / 2.0F);
   bool brushes = editor.brushes();
-  if (check("paint masks", brushes)) editor.toggle_masks();
+  if (check("paint masks", brushes)) editor.toggle_brush();
   show_help("paint masks", "Paint what stays; shift erases.");
   const commands::Row& clear = *commands::named("mask clear");
   if (row_button(clear, now, share_of_line(2))) ask(clear, now);

@@ -144,6 +144,33 @@ TEST_SUITE("puppet editor") {
     CHECK(puppet::parse_puppet(maker.puppet().text, "made"));
   }
 
+  TEST_CASE("of the twins that a mirror makes, the one at the click is chosen") {
+    Maker maker;
+    maker.editor.place(Maker::place({0.8, 0.6, 0}));
+    maker.editor.choose_input(*puppet::HandSignal::named("left.thumb_flexion"), 0.7);
+    REQUIRE(maker.hand_over());
+    maker.editor.toggle_mirror();
+    REQUIRE(maker.hand_over());
+    const auto start = [&] {
+      return maker.editor.rig().starts().col(static_cast<Eigen::Index>(maker.editor.point()));
+    };
+    for (const double side : {-1.0, 1.0}) {
+      maker.editor.place(Maker::place({0.5 * side, -0.5 * side, 0.7}));
+      maker.editor.choose_input(*puppet::HandSignal::named("left.index_flexion"), 0.7);
+      REQUIRE(maker.hand_over());
+      REQUIRE(maker.editor.point() != PuppetEditor::none);
+      CHECK(start().x() * side > 0.0);
+      const auto& moves = maker.puppet().functions[maker.editor.function()].moves;
+      REQUIRE(moves.size() == 1);
+      CHECK(moves[0].point == maker.editor.point());
+      maker.editor.place(Maker::place({0.5 * side, 0.3 * side, -0.7}));
+      maker.editor.toggle_pin();
+      REQUIRE(maker.hand_over());
+      CHECK(start().x() * side > 0.0);
+      CHECK(maker.puppet().points[maker.editor.point()].is_pin);
+    }
+  }
+
   TEST_CASE("an undo in the loop takes the editor along, but not edits that are on their way") {
     Maker maker;
     maker.editor.place(Maker::place({0, 1, 0}));
@@ -233,6 +260,14 @@ TEST_SUITE("puppet editor") {
     maker.editor.end_stroke();
     REQUIRE(maker.hand_over());
     CHECK(maker.puppet().masks.empty());
+    maker.editor.toggle_brush(); // back to the points
+    CHECK(maker.editor.is_on());
+    CHECK_FALSE(maker.editor.brushes());
+    maker.editor.turn(false);
+    maker.editor.toggle_brush(); // while the puppet plays, and not to edit it
+    CHECK(maker.editor.paints_masks());
+    maker.editor.toggle_brush();
+    CHECK_FALSE(maker.editor.is_on());
   }
 }
 

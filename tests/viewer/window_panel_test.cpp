@@ -422,7 +422,7 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     Person person;
     PuppetEditor& editor = person.window->editor();
     editor.begin(person.test.model, "ball.obj", nullptr);
-    editor.toggle_masks();
+    editor.toggle_brush();
     person.frame.settings.mode = flow::Mode::clay;
     person.set(person.frame.settings);
     const double before_cm = 100.0 * editor.brush_radius() / person.frame.units_per_metre;
