@@ -7,6 +7,7 @@
 #include "viewer/panel.hpp"
 #include "viewer/puppet_tool.hpp"
 #include "viewer/status_bar.hpp"
+#include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
 
@@ -108,10 +109,9 @@ void LiveWindow::show_model(const flow::Frame& frame) {
 
 bool LiveWindow::edit_puppet() {
   if (!editor_->is_on()) return false;
-  const double units_per_metre = builder_->units_per_metre();
-  const bool is_taken = tool_->follow(*window_, units_per_metre, *editor_);
-  draw_points(*editor_, window_->stage_camera(), window_->scene_size(), units_per_metre,
-              tool_->hovered());
+  const ModelPicture picture(*window_, builder_->units_per_metre());
+  const bool is_taken = tool_->follow(picture, *editor_);
+  draw_points(*editor_, picture, tool_->hovered());
   return is_taken;
 }
 
@@ -123,18 +123,16 @@ bool LiveWindow::move_hand(const flow::Frame& frame) {
   const render::Size size = window_->scene_size();
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Right)) hand_mover_.release();
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Right))
-    hand_mover_.take(camera, frame, {io.MousePos.x, io.MousePos.y}, size);
+    hand_mover_.take(camera, frame, pointer_px(), size);
   if (!hand_mover_.holds()) return false;
-  const auto dx = static_cast<double>(io.MouseDelta.x);
-  const auto dy = static_cast<double>(io.MouseDelta.y);
+  const Eigen::Vector2d by = moved_px();
   if (io.KeyShift) {
-    hand_mover_.turn(camera, dx, dy);
+    hand_mover_.turn(camera, by.x(), by.y());
   } else {
-    hand_mover_.shift(camera, dx, dy, size.height);
+    hand_mover_.shift(camera, by.x(), by.y(), size.height);
   }
   hand_mover_.push(camera, static_cast<double>(io.MouseWheel));
-  if (dx != 0.0 || dy != 0.0 || io.MouseWheel != 0.0F)
-    panel_->commands.emplace_back(hand_mover_.move());
+  if (!by.isZero(0.0) || io.MouseWheel != 0.0F) panel_->commands.emplace_back(hand_mover_.move());
   return true;
 }
 

@@ -302,7 +302,7 @@ void LiveWindow::Panel::ask(const commands::Row& row, const commands::Situation&
 /// Returns the metres of a pixel at the model under the mouse or, beside it, at what the camera
 /// looks at.
 double LiveWindow::Panel::metres_of_pixel(const flow::Frame& frame) const {
-  const double units = frame.units_per_metre;
+  const ModelPicture picture(window, frame.units_per_metre);
   const deform::Points& rest = editor.model().vertices;
   deform::Mesh shape = editor.seen();
   if (!editor.is_on() && rest.cols() > 0) {
@@ -310,10 +310,10 @@ double LiveWindow::Panel::metres_of_pixel(const flow::Frame& frame) const {
     if (frame.shape.block_count() == layout.block_count())
       layout.unpack(frame.shape, shape.vertices);
   }
-  const render::Camera camera = window.stage_camera();
-  const auto hit = hit_of_mouse(window, units, shape, rest);
-  const Eigen::Vector3d place = hit ? Eigen::Vector3d(hit->at / units) : camera.target;
-  return way_in_picture(camera, place, 1.0, 0.0, window.scene_size().height).norm();
+  const auto hit = picture.hit_of_mouse(shape, rest);
+  const Eigen::Vector3d place = hit ? hit->at : picture.camera.target;
+  return way_in_picture(picture.camera, place, 1.0, 0.0, picture.size.height).norm() /
+         frame.units_per_metre;
 }
 
 void LiveWindow::Panel::begin_gesture(const commands::Row& row, const commands::Situation& now) {

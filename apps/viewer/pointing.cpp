@@ -38,9 +38,9 @@ std::optional<NearPlace> nearest_in_picture(const render::Camera& camera,
 Vector3d way_in_picture(const render::Camera& camera, const Vector3d& place, double dx, double dy,
                         double height) noexcept {
   const Eigen::Matrix3d rows = camera.axes();
-  const double depth_m = std::max(0.0, rows.row(2).dot(camera.eye() - place));
-  const double metres = 2.0 * camera.tangent() * depth_m / std::max(1.0, height);
-  return metres * (dx * rows.row(0) - dy * rows.row(1)).transpose();
+  const double depth = std::max(0.0, rows.row(2).dot(camera.eye() - place));
+  const double pixel = 2.0 * camera.tangent() * depth / std::max(1.0, height);
+  return pixel * (dx * rows.row(0) - dy * rows.row(1)).transpose();
 }
 
 namespace {
@@ -66,12 +66,11 @@ std::optional<double> distance_to(const Ray& ray, const Vector3d& a, const Vecto
 } // namespace
 
 Ray ray_at(const render::Camera& camera, const Eigen::Vector2d& pixel, render::Size size) noexcept {
-  const Eigen::Matrix4d unproject = camera.projection(1.0 * size.width / size.height).inverse();
   const double x = 2.0 * pixel.x() / size.width - 1.0;
   const double y = 1.0 - 2.0 * pixel.y() / size.height;
-  const Vector3d eye = camera.eye();
-  const Vector3d far = (unproject * Eigen::Vector4d(x, y, 0.5, 1.0)).hnormalized();
-  return {eye, (far - eye).stableNormalized()};
+  const double half_width = camera.tangent() * size.width / size.height; // at a distance of 1
+  const Vector3d along((x - camera.centre) * half_width, y * camera.tangent(), -1.0);
+  return {camera.eye(), camera.axes().transpose() * along.normalized()};
 }
 
 std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray,
@@ -88,12 +87,12 @@ std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray,
     nearest = *distance;
     Vector3d normal = (b - a).cross(c - a).stableNormalized();
     if (normal.dot(ray.along) > 0.0) normal = -normal;
-    hit = SurfaceHit{ray.from + nearest * ray.along, normal, corners};
+    const Vector3d at = ray.from + nearest * ray.along;
     const Vector3d area = (b - a).cross(c - a);
     const double whole = std::max(area.squaredNorm(), std::numeric_limits<double>::min());
-    hit->parts.y() = (hit->at - a).cross(c - a).dot(area) / whole;
-    hit->parts.z() = (b - a).cross(hit->at - a).dot(area) / whole;
-    hit->parts.x() = 1.0 - hit->parts.y() - hit->parts.z();
+    const double of_b = (at - a).cross(c - a).dot(area) / whole;
+    const double of_c = (b - a).cross(at - a).dot(area) / whole;
+    hit = SurfaceHit{at, normal, {corners, {1.0 - of_b - of_c, of_b, of_c}}};
   });
   return hit;
 }

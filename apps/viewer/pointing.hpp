@@ -8,6 +8,7 @@
 #include <optional>
 
 #include <nendo/deform/mesh.hpp>
+#include <nendo/deform/surface_graph.hpp>
 #include <nendo/flow/frame.hpp>
 #include <nendo/flow/wrist.hpp>
 
@@ -31,8 +32,8 @@ std::optional<NearPlace> nearest_in_picture(const render::Camera& camera,
                                             const Eigen::Vector2d& pointer, render::Size size,
                                             double reach_px) noexcept;
 
-/// Returns the displacement in metres that moves `place` by these pixels in the picture while
-/// its depth stays the same. `height` is the picture's height in pixels.
+/// Returns the displacement, in the camera's units, that moves `place` by these pixels in the
+/// picture while its depth stays the same. `height` is the picture's height in pixels.
 Eigen::Vector3d way_in_picture(const render::Camera& camera, const Eigen::Vector3d& place,
                                double dx, double dy, double height) noexcept;
 
@@ -48,8 +49,7 @@ Ray ray_at(const render::Camera& camera, const Eigen::Vector2d& pixel, render::S
 struct SurfaceHit {
   Eigen::Vector3d at;
   Eigen::Vector3d normal;
-  std::array<std::uint32_t, 3> corners{};          ///< the triangle's vertices
-  Eigen::Vector3d parts = Eigen::Vector3d::Zero(); ///< barycentric coordinates of `at`
+  deform::SurfacePosition in_mesh{}; ///< the place in any shape of the mesh
 };
 
 /// Returns the first intersection of the ray with the mesh; nothing if there is none. Tests all

@@ -415,12 +415,7 @@ void PuppetEditor::toggle_brush() {
 
 /// Masks are of the model before it was shaped.
 void PuppetEditor::paint(const SurfaceHit& hit, bool erases) {
-  Vector3d at = hit.at;
-  if (paints_masks() && !hit.parts.isZero(0.0)) {
-    at.setZero();
-    for (std::size_t k = 0; k < hit.corners.size(); ++k)
-      at += hit.parts[static_cast<Index>(k)] * shown_.vertices.col(hit.corners[k]);
-  }
+  const Vector3d at = hit.in_mesh.in(shown_.vertices);
   if (!stroke_.empty() && (stroke_.back() - at).norm() < stroke_step * brush_radius_) return;
   if (stroke_.empty()) erases_ = erases;
   stroke_.push_back(at);

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <imgui.h>
 
 #include <nendo/base/units.hpp>
 
 #include "viewer/pointing.hpp"
+#include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
 
@@ -20,11 +22,6 @@ using Eigen::Vector3f;
 namespace {
 
 constexpr double still_px = 4.0; // a click that moves farther is a drag
-
-Vector2d pointer_now() {
-  const ImVec2 at = ImGui::GetIO().MousePos;
-  return {static_cast<double>(at.x), static_cast<double>(at.y)};
-}
 
 /// By which the mouse has turned what is at that pixel, counter-clockwise.
 double turned_deg(const Vector2d& pivot, const Vector2d& from, const Vector2d& to) {
@@ -71,43 +68,35 @@ void draw_way(ImDrawList& list, const Vector2d& from, const Vector2d& to, ImU32 
                          in_window(to - barb * along - 0.5 * barb * beside), colour);
 }
 
-/// Returns the point whose mark is under the pointer; PuppetEditor::none.
-std::size_t point_at(const PuppetEditor& editor, const render::Camera& stage_camera,
-                     render::Size size, double units_per_metre, const Vector2d& pointer) {
-  const auto found = nearest_in_picture(stage_camera, editor.rig().starts() / units_per_metre,
-                                        pointer, size, reach_px);
-  return found ? static_cast<std::size_t>(found->at) : PuppetEditor::none;
-}
-
-/// Returns whether the mark of the place that waits for its finger is under the pointer.
-bool is_at_pending(const PuppetEditor& editor, const render::Camera& stage_camera,
-                   render::Size size, double units_per_metre, const Vector2d& pointer) {
-  if (!editor.pending()) return false;
-  return nearest_in_picture(stage_camera, editor.pending()->at / units_per_metre, pointer, size,
-                            reach_px)
-      .has_value();
+/// Returns which of the places has its mark under the mouse.
+std::optional<std::size_t> mark_at_mouse(const ModelPicture& picture,
+                                         const deform::Points& places) {
+  const auto found =
+      nearest_in_picture(picture.camera, places, pointer_px(), picture.size, reach_px);
+  return found ? std::optional(static_cast<std::size_t>(found->at)) : std::nullopt;
 }
 
 /// Turns the chosen function by the way of the mouse.
-void drag_turn(const render::Camera& camera, render::Size size, double units_per_metre,
-               PuppetEditor& editor) {
+void drag_turn(const ModelPicture& picture, PuppetEditor& editor) {
   const puppet::AxisTurn turn = *editor.dragged_turn();
-  const ImVec2 moved = ImGui::GetIO().MouseDelta;
-  const Vector2d to = pointer_now();
-  const Vector2d from = to - Vector2d(static_cast<double>(moved.x), static_cast<double>(moved.y));
-  const auto pivot = pixel_of(camera, turn.through / units_per_metre, size);
+  const auto pivot = pixel_of(picture.camera, turn.through, picture.size);
   if (!pivot) return;
-  const bool away = camera.axes().row(2).dot(turn.axis) < 0.0;
-  editor.turn_by((away ? -1.0 : 1.0) * turned_deg(*pivot, from, to));
+  const bool away = picture.camera.axes().row(2).dot(turn.axis) < 0.0;
+  const Vector2d to = pointer_px();
+  editor.turn_by((away ? -1.0 : 1.0) * turned_deg(*pivot, to - moved_px(), to));
 }
 
 } // namespace
 
-std::optional<SurfaceHit> hit_of_mouse(const SceneWindow& window, double units_per_metre,
-                                       const deform::Mesh& shape, const deform::Points& rest) {
-  Ray ray = ray_at(window.stage_camera(), pointer_now(), window.scene_size());
-  ray.from *= units_per_metre;
-  return first_hit(shape, ray, &rest);
+ModelPicture::ModelPicture(const SceneWindow& window, double units_per_metre)
+    : camera(window.stage_camera()), size(window.scene_size()) {
+  camera.target *= units_per_metre;
+  camera.distance_m *= units_per_metre;
+}
+
+std::optional<SurfaceHit> ModelPicture::hit_of_mouse(const deform::Mesh& shape,
+                                                     const deform::Points& rest) const {
+  return first_hit(shape, ray_at(camera, pointer_px(), size), &rest);
 }
 
 const std::vector<render::Surface>& PuppetMarks::veils(const PuppetEditor& editor,
@@ -203,11 +192,10 @@ void PuppetMarks::add_masks(const PuppetEditor& editor) {
   veil_of(masks, mask_colour, editor.rig().puppet().inverted);
 }
 
-void draw_points(const PuppetEditor& editor, const render::Camera& stage_camera, render::Size size,
-                 double units_per_metre, std::size_t hovered) {
+void draw_points(const PuppetEditor& editor, const ModelPicture& picture, std::size_t hovered) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const auto pixel = [&](const Vector3d& place) {
-    return pixel_of(stage_camera, place / units_per_metre, size);
+    return pixel_of(picture.camera, place, picture.size);
   };
   constexpr ImU32 dark = IM_COL32(20, 20, 20, 230), white = IM_COL32(255, 255, 255, 255);
   constexpr ImU32 moved = IM_COL32(240, 140, 20, 255), pinned = IM_COL32(120, 150, 190, 255);
@@ -245,35 +233,61 @@ void draw_points(const PuppetEditor& editor, const render::Camera& stage_camera,
   }
 }
 
-bool PuppetTool::brush(const SceneWindow& window, double units_per_metre, PuppetEditor& editor) {
+bool PuppetTool::brush(const ModelPicture& picture, PuppetEditor& editor) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.MouseWheel != 0.0F) editor.scale_radius(static_cast<double>(io.MouseWheel));
   const bool begins = ImGui::IsMouseClicked(ImGuiMouseButton_Left);
-  if (!paints_ && !begins) return false;
-  const auto place = hit_of_mouse(window, units_per_metre, editor.seen(), editor.model().vertices);
+  if (!paints_ && !begins) return io.MouseWheel != 0.0F;
+  const auto place = picture.hit_of_mouse(editor.seen(), editor.model().vertices);
   if (begins) paints_ = place.has_value(); // beside the model, the mouse turns the camera
-  if (!paints_) return false;
-  if (place) editor.paint(*place, ImGui::GetIO().KeyShift);
+  if (!paints_) return io.MouseWheel != 0.0F;
+  if (place) editor.paint(*place, io.KeyShift);
   if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) return true;
   paints_ = false;
   editor.end_stroke();
   return true;
 }
 
-bool PuppetTool::follow(const SceneWindow& window, double units_per_metre, PuppetEditor& editor) {
-  const ImGuiIO& io = ImGui::GetIO();
-  const render::Camera camera = window.stage_camera();
-  const render::Size size = window.scene_size();
+void PuppetTool::drag(const ModelPicture& picture, PuppetEditor& editor) {
   if (editor.dragged_turn() != nullptr) {
-    drag_turn(camera, size, units_per_metre, editor);
-    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) editor.end_drag();
+    drag_turn(picture, editor);
+  } else {
+    const Vector3d start = editor.rig().starts().col(static_cast<Index>(editor.point()));
+    const Vector2d by = moved_px();
+    editor.drag(way_in_picture(picture.camera, start + editor.way_of(editor.point()), by.x(),
+                               by.y(), picture.size.height));
+  }
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) editor.end_drag();
+}
+
+/// True: the press or the wheel is for a point.
+bool PuppetTool::take_point(const ModelPicture& picture, PuppetEditor& editor) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool is_pressed = ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+  if (hovered_ == PuppetEditor::none) {
+    if (!is_pressed || !editor.pending() || !mark_at_mouse(picture, editor.pending()->at))
+      return false;
+    // It cannot go anywhere yet, and the camera is not meant.
+    holds_pending_ = true;
+    editor.ask_for_finger();
     return true;
   }
+  if (!is_pressed && io.MouseWheel == 0.0F) return false;
+  editor.forget_place();
+  if (io.MouseWheel != 0.0F) {
+    if (editor.point() != hovered_) editor.choose_point(hovered_);
+    editor.scale_radius(static_cast<double>(io.MouseWheel));
+  } else if (io.KeyShift) {
+    editor.begin_turn(hovered_, picture.camera.axes().row(2).transpose());
+  } else {
+    editor.begin_drag(hovered_);
+  }
+  return true;
+}
+
+bool PuppetTool::follow(const ModelPicture& picture, PuppetEditor& editor) {
   if (editor.is_dragging()) {
-    const Vector3d start = editor.rig().starts().col(static_cast<Eigen::Index>(editor.point()));
-    const Vector3d end_m = (start + editor.way_of(editor.point())) / units_per_metre;
-    editor.drag(units_per_metre *
-                way_in_picture(camera, end_m, static_cast<double>(io.MouseDelta.x),
-                               static_cast<double>(io.MouseDelta.y), size.height));
-    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) editor.end_drag();
+    drag(picture, editor);
     return true;
   }
   hovered_ = PuppetEditor::none;
@@ -281,44 +295,19 @@ bool PuppetTool::follow(const SceneWindow& window, double units_per_metre, Puppe
     holds_pending_ = ImGui::IsMouseDown(ImGuiMouseButton_Left);
     return true;
   }
-  if (io.WantCaptureMouse && !paints_) return false;
-  if (editor.brushes()) {
-    if (io.MouseWheel != 0.0F) editor.scale_radius(static_cast<double>(io.MouseWheel));
-    return brush(window, units_per_metre, editor) || io.MouseWheel != 0.0F;
-  }
-  hovered_ = point_at(editor, camera, size, units_per_metre, pointer_now());
-  if (hovered_ != PuppetEditor::none && io.MouseWheel != 0.0F) {
-    editor.forget_place();
-    if (editor.point() != hovered_) editor.choose_point(hovered_);
-    editor.scale_radius(static_cast<double>(io.MouseWheel));
-    return true;
-  }
+  if (ImGui::GetIO().WantCaptureMouse && !paints_) return false;
+  if (editor.brushes()) return brush(picture, editor);
+  hovered_ = mark_at_mouse(picture, editor.rig().starts()).value_or(PuppetEditor::none);
+  if (take_point(picture, editor)) return true;
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-    if (hovered_ != PuppetEditor::none) {
-      editor.forget_place();
-      if (io.KeyShift)
-        editor.begin_turn(hovered_, camera.axes().row(2).transpose());
-      else
-        editor.begin_drag(hovered_);
-      return true;
-    }
-    if (is_at_pending(editor, camera, size, units_per_metre, pointer_now())) {
-      // It cannot go anywhere yet, and the camera is not meant.
-      holds_pending_ = true;
-      editor.ask_for_finger();
-      return true;
-    }
-    pressed_at_ = pointer_now();
+    pressed_at_ = pointer_px();
     return true; // the way to here is no drag of the camera
   }
-  if (pressed_at_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
-    const bool is_click = (pointer_now() - *pressed_at_).norm() <= still_px;
-    pressed_at_.reset();
-    if (is_click)
-      if (const auto place =
-              hit_of_mouse(window, units_per_metre, editor.seen(), editor.model().vertices))
-        editor.place(*place);
-  }
+  if (!pressed_at_ || !ImGui::IsMouseReleased(ImGuiMouseButton_Left)) return false;
+  const bool is_click = (pointer_px() - *std::exchange(pressed_at_, {})).norm() <= still_px;
+  if (is_click)
+    if (const auto place = picture.hit_of_mouse(editor.seen(), editor.model().vertices))
+      editor.place(*place);
   return false;
 }
 

@@ -36,26 +36,34 @@ private:
   std::vector<std::uint32_t> corners_;
 };
 
+/// How the window shows the model, in its units.
+struct ModelPicture {
+  ModelPicture(const SceneWindow& window, double units_per_metre);
+  /// Returns the place under the mouse of a model in this shape; nothing if the mouse is beside it.
+  /// `rest` determines its triangulation.
+  std::optional<SurfaceHit> hit_of_mouse(const deform::Mesh& shape,
+                                         const deform::Points& rest) const;
+
+  render::Camera camera;
+  render::Size size;
+};
+
 /// Draws the points as marks over the picture, with names, and with arrows for their displacements
 /// by the chosen function. Of many points, only the chosen and the `hovered` one have names.
-void draw_points(const PuppetEditor& editor, const render::Camera& stage_camera, render::Size size,
-                 double units_per_metre, std::size_t hovered);
-
-/// Returns the place under the mouse of a model in this shape, in model units; nothing if the mouse
-/// is beside it. `rest` determines its triangulation.
-std::optional<SurfaceHit> hit_of_mouse(const SceneWindow& window, double units_per_metre,
-                                       const deform::Mesh& shape, const deform::Points& rest);
+void draw_points(const PuppetEditor& editor, const ModelPicture& picture, std::size_t hovered);
 
 class PuppetTool {
 public:
   /// Handles the mouse: a click places or chooses a point; a drag sets its displacement, with shift
   /// its rotation; the wheel sets its radius; the brush paints. Returns true if it has used the
   /// mouse.
-  bool follow(const SceneWindow& window, double units_per_metre, PuppetEditor& editor);
+  bool follow(const ModelPicture& picture, PuppetEditor& editor);
   std::size_t hovered() const noexcept { return hovered_; } ///< point under the mouse, or none
 
 private:
-  bool brush(const SceneWindow& window, double units_per_metre, PuppetEditor& editor);
+  bool brush(const ModelPicture& picture, PuppetEditor& editor);
+  static void drag(const ModelPicture& picture, PuppetEditor& editor);
+  bool take_point(const ModelPicture& picture, PuppetEditor& editor);
 
   std::size_t hovered_ = PuppetEditor::none;
   std::optional<Eigen::Vector2d> pressed_at_; ///< a press beside all points

@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include <Eigen/Core>
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
@@ -118,6 +119,17 @@ inline bool is_key_down(int key) {
 inline bool pressed(int key, bool repeats = false) {
   const auto known = imgui_key(key);
   return known != no_imgui_key && ImGui::IsKeyPressed(known, repeats);
+}
+
+/// Return where the pointer is, in pixels from the window's top left corner, and by how much it has
+/// moved since the last picture.
+inline Eigen::Vector2d pointer_px() {
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  return {static_cast<double>(at.x), static_cast<double>(at.y)};
+}
+inline Eigen::Vector2d moved_px() {
+  const ImVec2 by = ImGui::GetIO().MouseDelta;
+  return {static_cast<double>(by.x), static_cast<double>(by.y)};
 }
 
 /// Returns whether keys are for the window: no text field, dialog or list is active.

@@ -36,7 +36,9 @@ struct Maker {
     frame.hands[flow::Placement::index_of(side)].angles.fingers[finger - 1].mcp_flexion_rad = rad;
     look();
   }
-  static SurfaceHit place(const Vector3d& at) { return {at.normalized(), at.normalized()}; }
+  static SurfaceHit place(const Vector3d& at) {
+    return {at.normalized(), at.normalized(), deform::nearest_position(test::ball(24), at)};
+  }
   /// What the loop would do.
   bool hand_over() {
     auto rig = editor.take();
@@ -72,6 +74,7 @@ TEST_SUITE("puppet editor") {
       REQUIRE(hit);
       CHECK((hit->at - place).norm() < 0.02);
       CHECK(hit->normal.dot(place) > 0.99);
+      CHECK((hit->in_mesh.in(ball.vertices) - hit->at).norm() < 1e-9);
     }
     CHECK_FALSE(first_hit(ball, ray_at(camera, {2.0, 2.0}, size)));
   }
