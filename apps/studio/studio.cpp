@@ -80,7 +80,7 @@ private:
   /// Only pictures on which nothing is missing count.
   bool is_complete() {
     if (screen_ == Screen::timeline) {
-      edit::WindowEditing* const editing = timeline_.screen()->editing();
+      edit::WindowEditing* const editing = timeline_.editing();
       return editing != nullptr && editing->is_settled();
     }
     return start_ && start_->is_complete();
@@ -96,7 +96,7 @@ private:
 
   Wish show_timeline() {
     const Wish wish = timeline_.show();
-    if (timeline_.screen() == nullptr) screen_ = Screen::start;
+    if (!timeline_.is_open()) screen_ = Screen::start;
     return wish;
   }
 

@@ -63,7 +63,7 @@ void StudioView::show_shaping(const RunStatus& status, Asks& asks) {
 
 void StudioView::show_timeline(const RunStatus& status, Asks& asks) {
   const Wish wish = timeline().show();
-  if (timeline().screen() == nullptr) go_to(Screen::shaping, status, asks);
+  if (!timeline().is_open()) go_to(Screen::shaping, status, asks);
   if (is_wish(wish)) go(wish, status, asks);
 }
 

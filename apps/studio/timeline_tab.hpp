@@ -1,37 +1,55 @@
 #pragma once
-// The timeline of the studio, which stays while other screens are shown, and asks before unsaved
-// edits are lost. Main thread.
+// The timeline of the studio: opened from its file, or made from a recording. It stays while other
+// screens are shown, and asks before unsaved edits are lost. Main thread.
 
 #include <cstdint>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "edit/window_editing.hpp"
 #include "studio/bar.hpp"
-#include "studio/timeline_screen.hpp"
 #include "studio/wish.hpp"
+#include "takes/timeline_frames.hpp"
+#include "timeline/edit.hpp"
 
 namespace nendo::studio {
 
 /// Returns whether a file of this name is a recording or a timeline.
 bool opens_in_timeline(const std::string& file);
 
+/// A timeline that was read already, and what is shown of it first.
+struct FirstTimeline {
+  std::string file;
+  std::string out; ///< where it is saved
+  std::shared_ptr<takes::TimelineFrames> frames;
+  std::optional<timeline::KeyRef> key{}; ///< selected
+  std::optional<double> at_s{};          ///< position of the play head
+};
+
 class TimelineTab {
 public:
   TimelineTab(std::shared_ptr<viewer::SceneWindow> window, Bar& bar)
       : window_(std::move(window)), bar_(bar) {}
 
-  TimelineScreen* screen() const noexcept { return screen_.get(); } ///< null: none
-  bool is_modified() const noexcept { return screen_ && screen_->is_modified(); }
-  /// Replaces the screen by that of a file, or of no file yet.
+  /// Begins to read a timeline or a recording in a thread of its own. A recording is replayed for
+  /// it, which takes a small part of its duration. Without a file, the screen says how to get one.
   void open(const std::string& file);
   void open(const FirstTimeline& first);
-  /// To be called before show(), if something else was shown before. Without a screen, opens
+  bool is_open() const noexcept { return opened_.has_value(); }
+  /// Returns the editing; null: the file is still being read, or there is none.
+  edit::WindowEditing* editing() const noexcept {
+    return opened_ ? opened_->editing.get() : nullptr;
+  }
+  bool is_modified() const noexcept;
+
+  /// To be called before show(), if something else was shown before. If nothing is open, opens
   /// `usual`; empty: no file yet.
   void enter(const std::string& usual = {});
-  /// Draws one picture, with the bar. If it cannot be shown, the bar says why, and there is no
-  /// screen any more.
+  /// Draws one picture, with the bar. Returns Quit when the user closes the window. What cannot be
+  /// read or played is open no more, and the bar says why.
   Wish show();
 
   /// Returns whether the wish loses no unsaved edits. Otherwise asks the user, and take_settled()
@@ -42,13 +60,21 @@ public:
   Wish take_settled();
 
 private:
+  struct Opened {
+    std::string file; ///< empty: none
+    std::string out;  ///< where the timeline is saved
+    std::future<Result<std::unique_ptr<takes::TimelineFrames>>> reading{};
+    std::unique_ptr<edit::WindowEditing> editing{};
+    std::optional<std::uint64_t> discarded{}; ///< the revision that the user does not want to save
+  };
+  Wish show_reading();
+  Result<Wish> show_opened();
   bool has_edits_to_lose() const noexcept;
 
   std::shared_ptr<viewer::SceneWindow> window_;
   Bar& bar_;
-  std::unique_ptr<TimelineScreen> screen_;
+  std::optional<Opened> opened_;
   Wish waiting_;
-  std::optional<std::uint64_t> discarded_{}; ///< the revision that the user does not want to save
 };
 
 } // namespace nendo::studio

@@ -35,14 +35,14 @@ struct Seat : test::StudioSeat {
         FirstTimeline{"wave.nendo", out, *std::move(frames), timeline::KeyRef{Side::right, 3}});
     show = [this] {
       tab.show();
-      REQUIRE(tab.screen() != nullptr);
+      REQUIRE(tab.is_open());
     };
     show();
   }
   void edit(viewer::EditCommand command) {
     viewer::EditActions actions;
     actions.commands = {command};
-    tab.screen()->editing()->session().handle(actions);
+    tab.editing()->session().handle(actions);
   }
 };
 
@@ -119,14 +119,14 @@ TEST_SUITE("timeline_tab" * doctest::skip(!test::restraint_is_counted)) {
     seat.window->simulate({});
     seat.show();
     seat.show();
-    const std::uint64_t revision = seat.tab.screen()->revision();
+    const std::uint64_t revision = seat.tab.editing()->session().history().revision();
     seat.key(GLFW_KEY_Y, false, true); // the question comes first
-    CHECK(seat.tab.screen()->revision() == revision);
+    CHECK(seat.tab.editing()->session().history().revision() == revision);
     seat.key(GLFW_KEY_ESCAPE); // stays
     CHECK_FALSE(is_wish(seat.tab.take_settled()));
     CHECK_FALSE(is_wish(seat.tab.show()));
     seat.key(GLFW_KEY_Y, false, true);
-    CHECK(seat.tab.screen()->revision() != revision);
+    CHECK(seat.tab.editing()->session().history().revision() != revision);
   }
 }
 
