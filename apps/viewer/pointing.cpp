@@ -154,17 +154,11 @@ flow::WristMove HandMover::move() const noexcept {
   return flow::WristMove::to(side, wrist);
 }
 
-std::optional<hand::Finger> TipMover::tip_at(const render::Camera& camera,
-                                             const hand::HandPose& pose,
-                                             const Eigen::Vector2d& pointer,
-                                             render::Size size) noexcept {
-  const auto tip = nearest_in_picture(camera, pose.fingertip_positions(), pointer, size, reach);
+std::optional<hand::Finger> tip_at(const render::Camera& camera, const hand::HandPose& pose,
+                                   const Vector2d& pointer, render::Size size) noexcept {
+  constexpr double reach_px = 14.0;
+  const auto tip = nearest_in_picture(camera, pose.fingertip_positions(), pointer, size, reach_px);
   return tip ? std::optional(static_cast<hand::Finger>(tip->at)) : std::nullopt;
-}
-
-void TipMover::take(const hand::HandPose& pose, hand::Finger finger) noexcept {
-  finger_ = finger;
-  begin(pose.fingertip_positions().col(static_cast<Eigen::Index>(finger)), Vector3d::Zero());
 }
 
 } // namespace nendo::viewer

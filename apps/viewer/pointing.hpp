@@ -58,18 +58,17 @@ struct SurfaceHit {
 std::optional<SurfaceHit> first_hit(const deform::Mesh& mesh, const Ray& ray,
                                     const deform::Points* rest = nullptr);
 
-/// A place on the stage that the mouse moves within a box.
+/// A place on the stage that the mouse moves within a box, as a timeline's fingertip.
 class PlaceMover {
 public:
+  /// Takes the place. The box: as far as arms reach from `middle_m` on each axis, and up to the
+  /// place itself.
+  void begin(const Eigen::Vector3d& place_m, const Eigen::Vector3d& middle_m) noexcept;
   /// Moves it by the pointer's motion in pixels, in the picture's plane, so that it stays under the
   /// pointer. `height` is the picture's height in pixels.
   void shift(const render::Camera& camera, double dx, double dy, double height) noexcept;
   /// Moves it by steps of the wheel, 1 cm each. Positive steps go away from the viewer.
   void push(const render::Camera& camera, double steps) noexcept;
-
-protected:
-  /// The box: as far as arms reach from `middle_m` on each axis, and up to the place itself.
-  void begin(const Eigen::Vector3d& place_m, const Eigen::Vector3d& middle_m) noexcept;
   const Eigen::Vector3d& place_m() const noexcept { return place_m_; }
 
 private:
@@ -101,25 +100,9 @@ private:
   Eigen::Quaterniond rotation_ = Eigen::Quaterniond::Identity(); ///< in T_stage_wrist
 };
 
-/// Drags a fingertip of a timeline's key while the mouse button is down.
-class TipMover : public PlaceMover {
-public:
-  /// Returns the fingertip nearest to the pointer, in pixels from the picture's top left corner;
-  /// nothing if none is within `reach` pixels.
-  static constexpr double reach = 14.0;
-  static std::optional<hand::Finger> tip_at(const render::Camera& camera,
-                                            const hand::HandPose& pose,
-                                            const Eigen::Vector2d& pointer,
-                                            render::Size size) noexcept;
-
-  void take(const hand::HandPose& pose, hand::Finger finger) noexcept;
-  void release() noexcept { finger_.reset(); }
-  std::optional<hand::Finger> finger() const noexcept { return finger_; } ///< the held one
-  /// Returns the held tip's target on the stage, in metres.
-  const Eigen::Vector3d& target_m() const noexcept { return place_m(); }
-
-private:
-  std::optional<hand::Finger> finger_;
-};
+/// Returns the fingertip nearest to the pointer, in pixels from the picture's top left corner;
+/// nothing if none is within 14 pixels.
+std::optional<hand::Finger> tip_at(const render::Camera& camera, const hand::HandPose& pose,
+                                   const Eigen::Vector2d& pointer, render::Size size) noexcept;
 
 } // namespace nendo::viewer

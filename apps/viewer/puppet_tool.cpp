@@ -52,10 +52,6 @@ bool is_masked(const Vector3d& place, const std::vector<puppet::Mask>& masks) {
   });
 }
 
-ImVec2 in_window(const Vector2d& pixel) {
-  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
-}
-
 /// The shaft and two barbs.
 void draw_way(ImDrawList& list, const Vector2d& from, const Vector2d& to, ImU32 colour) {
   const Vector2d way = to - from;

@@ -53,7 +53,10 @@ struct TimelineWindow::Panel {
   static constexpr float width_em = 20.0F;
 
   DopeSheetWidget strip;
-  TipMover tips;
+  struct {
+    std::optional<hand::Finger> held; ///< the fingertip that the mouse drags
+    PlaceMover target;
+  } tips;
   Retiming retiming{0.0, 0.0, 2.0};
   bool retiming_shown = false;
   CommandSearch search;
@@ -189,26 +192,25 @@ EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFr
 bool TimelineWindow::move_tip(const TimelineView& view, const render::SceneFrame& scene_frame,
                               EditActions& actions) {
   const ImGuiIO& io = ImGui::GetIO();
-  TipMover& tips = panel_->tips;
+  auto& [held, tip] = panel_->tips;
   const render::SceneHand* const hand = bendable_hand(view, scene_frame);
   const render::Camera camera = window_->stage_camera();
   const render::Size size = window_->scene_size();
   if (!io.WantCaptureMouse && hand != nullptr && ImGui::IsMouseClicked(ImGuiMouseButton_Left))
-    if (const auto finger =
-            TipMover::tip_at(camera, hand->pose, {io.MousePos.x, io.MousePos.y}, size))
-      tips.take(hand->pose, *finger);
-  if (!tips.finger()) return false;
+    if ((held = tip_at(camera, hand->pose, pointer_px(), size)))
+      tip.begin(hand->pose.fingertip_positions().col(static_cast<Eigen::Index>(*held)),
+                Eigen::Vector3d::Zero());
+  if (!held) return false;
   const bool given_up = is_struck(commands::row_of(EditCommand::select_none));
   if (given_up || hand == nullptr || !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     (given_up ? actions.drop : actions.keep) = true;
-    tips.release();
+    held.reset();
     return true;
   }
-  tips.shift(camera, static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y),
-             size.height);
-  tips.push(camera, static_cast<double>(io.MouseWheel));
-  if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || io.MouseWheel != 0.0F)
-    actions.tried = TipDrag{*tips.finger(), tips.target_m()};
+  const Eigen::Vector2d by = moved_px();
+  tip.shift(camera, by.x(), by.y(), size.height);
+  tip.push(camera, static_cast<double>(io.MouseWheel));
+  if (!by.isZero(0.0) || io.MouseWheel != 0.0F) actions.tried = TipDrag{*held, tip.place_m()};
   return true;
 }
 
@@ -217,28 +219,23 @@ void TimelineWindow::mark_tips(const TimelineView& view,
                                const render::SceneFrame& scene_frame) const {
   const render::SceneHand* const hand = bendable_hand(view, scene_frame);
   if (hand == nullptr) return;
-  const ImGuiIO& io = ImGui::GetIO();
   const render::Camera camera = window_->stage_camera();
   const render::Size size = window_->scene_size();
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const auto held = panel_->tips.finger();
-  const auto pointed_at =
-      held || io.WantCaptureMouse
-          ? held
-          : TipMover::tip_at(camera, hand->pose, {io.MousePos.x, io.MousePos.y}, size);
-  const auto on_screen = [](const Eigen::Vector2d& pixel) {
-    return ImVec2(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
-  };
+  const auto& [held, held_tip] = panel_->tips;
+  const auto pointed_at = held || ImGui::GetIO().WantCaptureMouse
+                              ? held
+                              : tip_at(camera, hand->pose, pointer_px(), size);
   const auto tips = hand->pose.fingertip_positions();
   for (Eigen::Index finger = 0; finger < tips.cols(); ++finger) {
     const auto pixel = pixel_of(camera, tips.col(finger), size);
     if (!pixel || pixel->y() > size.height) continue;
     const bool marked = pointed_at == static_cast<hand::Finger>(finger);
-    list.AddCircle(on_screen(*pixel), ring_px, marked ? pointed_tip_colour : ring_colour, 0,
+    list.AddCircle(in_window(*pixel), ring_px, marked ? pointed_tip_colour : ring_colour, 0,
                    marked ? 3.0F : 2.0F);
     if (!marked || !held) continue;
-    if (const auto target = pixel_of(camera, panel_->tips.target_m(), size))
-      list.AddLine(on_screen(*pixel), on_screen(*target), pointed_tip_colour, 1.5F);
+    if (const auto target = pixel_of(camera, held_tip.place_m(), size))
+      list.AddLine(in_window(*pixel), in_window(*target), pointed_tip_colour, 1.5F);
   }
 }
 

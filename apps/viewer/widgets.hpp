@@ -132,6 +132,10 @@ inline Eigen::Vector2d moved_px() {
   return {static_cast<double>(by.x), static_cast<double>(by.y)};
 }
 
+inline ImVec2 in_window(const Eigen::Vector2d& pixel) {
+  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
+}
+
 /// Returns whether keys are for the window: no text field, dialog or list is active.
 inline bool takes_keys() {
   return !ImGui::GetIO().WantTextInput && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);

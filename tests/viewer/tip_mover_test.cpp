@@ -45,38 +45,32 @@ TEST_SUITE("tip_mover") {
     for (Eigen::Index finger = 0; finger < 5; ++finger) {
       const Vector2d pixel = seen_at(camera, pose.fingertip_positions().col(finger));
       for (const Vector2d& off : {Vector2d(0.0, 0.0), Vector2d(3.0, -3.0)})
-        CHECK(TipMover::tip_at(camera, pose, pixel + off, size) ==
-              static_cast<hand::Finger>(finger));
+        CHECK(tip_at(camera, pose, pixel + off, size) == static_cast<hand::Finger>(finger));
     }
-    CHECK_FALSE(TipMover::tip_at(camera, pose, Vector2d(-500.0, -500.0), size));
+    CHECK_FALSE(tip_at(camera, pose, Vector2d(-500.0, -500.0), size));
     Camera behind = camera; // looks away from the hand
     behind.target = camera.eye() + (camera.eye() - camera.target);
-    CHECK_FALSE(TipMover::tip_at(behind, pose, Vector2d(450.0, 300.0), size));
+    CHECK_FALSE(tip_at(behind, pose, Vector2d(450.0, 300.0), size));
   }
 
   TEST_CASE("its target stays under the pointer, in the picture's plane, and the wheel pushes it") {
     const auto pose = open_hand();
     const Camera camera = above();
     const Vector3d tip = pose.fingertip_positions().col(1);
-    TipMover mover;
-    CHECK_FALSE(mover.finger());
-    mover.take(pose, hand::Finger::index);
-    CHECK(mover.finger() == hand::Finger::index);
-    CHECK(mover.target_m() == tip);
+    PlaceMover mover;
+    mover.begin(tip, Vector3d::Zero());
+    CHECK(mover.place_m() == tip);
     for (int step = 0; step < 8; ++step)
       mover.shift(camera, 5.0, -3.0, size.height);
-    CHECK(
-        (seen_at(camera, mover.target_m()) - seen_at(camera, tip) - Vector2d(40.0, -24.0)).norm() <
-        1e-6);
-    CHECK(std::abs(camera.axes().row(2).dot(mover.target_m() - tip)) < 1e-12);
-    const Vector3d before = mover.target_m();
+    CHECK((seen_at(camera, mover.place_m()) - seen_at(camera, tip) - Vector2d(40.0, -24.0)).norm() <
+          1e-6);
+    CHECK(std::abs(camera.axes().row(2).dot(mover.place_m() - tip)) < 1e-12);
+    const Vector3d before = mover.place_m();
     mover.push(camera, 2.0);
-    CHECK((mover.target_m() - before + 0.02 * camera.axes().row(2).transpose()).norm() < 1e-12);
+    CHECK((mover.place_m() - before + 0.02 * camera.axes().row(2).transpose()).norm() < 1e-12);
     mover.shift(camera, 1e12, -1e12, 0.0);
-    CHECK(mover.target_m().allFinite());
-    CHECK(mover.target_m().cwiseAbs().maxCoeff() <= 2.0);
-    mover.release();
-    CHECK_FALSE(mover.finger());
+    CHECK(mover.place_m().allFinite());
+    CHECK(mover.place_m().cwiseAbs().maxCoeff() <= 2.0);
   }
 }
 
