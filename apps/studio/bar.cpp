@@ -65,21 +65,18 @@ Wish Bar::take_wish() {
 
 void Bar::ask(const std::string& what) {
   question_ = what;
-  question_begins_ = true;
 }
 
 void Bar::ask_where_to_save() {
   std::filesystem::path beside = std::filesystem::path(state_.file);
   if (beside.extension() != ".obj" && beside.extension() != ".ply" && beside.extension() != ".stl")
     beside.replace_extension(".obj");
-  dialog_saves_ = true;
   dialog_.begin(FileDialog::Purpose::save, "Save the shape", {".obj", ".ply", ".stl"},
                 std::filesystem::path("shaped-" + beside.filename().string()));
 }
 
 void Bar::ask_what_to_open() {
   const auto recent = session::recent_files();
-  dialog_saves_ = false;
   dialog_.begin(FileDialog::Purpose::open, "Open a file", openable(),
                 recent.empty() ? "." : recent.front());
 }
@@ -123,7 +120,7 @@ void Bar::follow_keys() {
 
 void Bar::draw_question() {
   if (question_.empty()) return;
-  if (std::exchange(question_begins_, false)) ImGui::OpenPopup(question_title);
+  if (!ImGui::IsPopupOpen(question_title)) ImGui::OpenPopup(question_title);
   if (!viewer::begin_question(question_title)) return;
   ImGui::Text("Save %s?", question_.c_str());
   ImGui::Dummy({0.0F, em(0.3F)});
@@ -141,7 +138,7 @@ void Bar::draw_question() {
 
 void Bar::draw_error() {
   constexpr const char* title = "That did not work";
-  if (error_.empty()) return;
+  if (error_.empty() || !question_.empty()) return; // one after the other
   if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   if (!viewer::begin_question(title)) return;
   ImGui::PushTextWrapPos(em(34.0F));
@@ -181,7 +178,7 @@ void Bar::draw() {
   ImGui::PopStyleVar(2);
   // Dialogs are no parts of the bar: ImGui puts windows that appear meanwhile behind them.
   if (auto chosen = dialog_.draw()) {
-    if (dialog_saves_)
+    if (dialog_.saves())
       save_ = *chosen;
     else
       wish_ = Open{*chosen};

@@ -64,9 +64,7 @@ private:
   viewer::SceneWindow& window_;
   BarState state_;
   FileDialog dialog_;
-  bool dialog_saves_ = false;
   std::string question_;
-  bool question_begins_ = false;
   std::string error_;
   std::vector<std::string> recent_; ///< the files of the menu, since it was opened
   Wish wish_;

@@ -134,9 +134,9 @@ std::optional<std::string> FileDialog::draw_end(bool confirmed) {
   const fs::path file = folder_ / (name_.empty() ? "" : ending_added(name_));
   std::error_code ignored;
   const bool exists = !name_.empty() && fs::exists(file, ignored);
-  const bool replaces = purpose_ == Purpose::save && exists;
+  const bool replaces = saves() && exists;
   if (replaces) ImGui::TextColored(viewer::warning(), "This file exists, and is replaced.");
-  const bool is_possible = !name_.empty() && (purpose_ == Purpose::save || exists);
+  const bool is_possible = !name_.empty() && (saves() || exists);
   const char* const words = purpose_ == Purpose::open ? "Open" : replaces ? "Replace" : "Save";
   const bool pressed = button(words, em(6.0F), is_possible);
   ImGui::SameLine();

@@ -19,6 +19,7 @@ public:
              const std::filesystem::path& beside);
   /// Draws it, if it is open. Returns the chosen file once. Reads the folder when it changes.
   std::optional<std::string> draw();
+  bool saves() const noexcept { return purpose_ == Purpose::save; }
   bool is_open() const noexcept { return is_open_ || begins_; }
 
 private:

@@ -21,10 +21,18 @@ std::vector<Control>& noted() {
   return all;
 }
 
-/// Two colours of a chosen button.
-void push_chosen() {
-  ImGui::PushStyleColor(ImGuiCol_Button, accent());
-  ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0F, 1.0F, 1.0F, 1.0F));
+constexpr ImU32 chosen_text = IM_COL32(255, 255, 255, 255);
+
+/// A button, in the accent's colour if it is chosen.
+bool draw_button(std::string_view name, ImVec2 size, bool is_chosen) {
+  if (is_chosen) {
+    ImGui::PushStyleColor(ImGuiCol_Button, accent());
+    ImGui::PushStyleColor(ImGuiCol_Text, chosen_text);
+  }
+  const bool pressed = ImGui::Button(std::string(name).c_str(), size);
+  if (is_chosen) ImGui::PopStyleColor(2);
+  note_control(name, name, 2.0F);
+  return pressed;
 }
 
 std::string& shown_tooltip() {
@@ -118,13 +126,9 @@ void note_control(std::string_view name, std::string_view text, float around) {
 }
 
 bool button(std::string_view name, float width, bool is_possible, bool is_chosen) {
-  const std::string text(name);
-  if (is_chosen) push_chosen();
   ImGui::BeginDisabled(!is_possible);
-  const bool pressed = ImGui::Button(text.c_str(), ImVec2(width, 0.0F));
+  const bool pressed = draw_button(name, ImVec2(width, 0.0F), is_chosen);
   ImGui::EndDisabled();
-  if (is_chosen) ImGui::PopStyleColor(2);
-  note_control(name, name, 2.0F);
   if (!noted().empty()) noted().back().is_possible = is_possible;
   return pressed && is_possible;
 }
@@ -152,18 +156,16 @@ bool one_of(std::span<const Choice> choices, std::size_t& chosen, std::size_t in
   for (std::size_t at = 0; at < choices.size(); ++at) {
     if (at % in_line != 0) ImGui::SameLine();
     const bool is_chosen = at == chosen;
-    if (is_chosen) push_chosen();
     ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.5F, 1.0F));
-    const bool pressed = ImGui::Button(std::string(choices[at].name).c_str(),
-                                       ImVec2(width, ImGui::GetFrameHeight() + high));
+    const bool pressed =
+        draw_button(choices[at].name, ImVec2(width, ImGui::GetFrameHeight() + high), is_chosen);
     ImGui::PopStyleVar();
     if (picture != nullptr) {
       const ImVec2 low = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
       picture(*ImGui::GetWindowDrawList(), {low.x + pad.x, low.y + pad.y},
-              {end.x - pad.x, low.y + pad.y + high}, at, ImGui::GetColorU32(ImGuiCol_Text));
+              {end.x - pad.x, low.y + pad.y + high}, at,
+              is_chosen ? chosen_text : ImGui::GetColorU32(ImGuiCol_Text));
     }
-    if (is_chosen) ImGui::PopStyleColor(2);
-    note_control(choices[at].name, choices[at].name, 2.0F);
     show_text(choices[at].help);
     if (!pressed) continue;
     changed = changed || !is_chosen;

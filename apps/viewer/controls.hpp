@@ -1,17 +1,35 @@
 #pragma once
 // Buttons, fields and choices of the windows: a label at the left of a field, and text that fits.
 // Each notes its name and rectangle, so that tests press it by its name, and find what overlaps.
-// Main thread.
+// Main thread. Does not include ImGui, which tests do not have.
 
 #include <span>
 #include <string>
 #include <string_view>
 
-#include <imgui.h>
+#include <Eigen/Core>
 
-#include "viewer/control_list.hpp"
+struct ImDrawList;
+struct ImVec2;
 
 namespace nendo::viewer {
+
+/// A control of the current picture, as far as it can be seen.
+struct Control {
+  std::string name;
+  Eigen::Vector2f min, max; ///< pixels from the window's top left corner
+  bool is_possible = true;
+  bool is_cut = false; ///< its text is wider than it, or it is wider than what it is in
+};
+/// Returns the controls that were drawn since forget_controls(). Main thread.
+std::span<const Control> controls() noexcept;
+void forget_controls() noexcept;
+/// Returns the tooltip of the current picture; empty: none.
+const std::string& tooltip() noexcept;
+/// Replaces the file that the environment variable NENDO_CONTROLS names, if there is one, by a line
+/// for each control: min x, min y, max x, max y, 1 or 0 for is_possible, and the name. By it a
+/// program that moves the mouse finds what to press. Main thread; blocks for the file.
+void write_controls();
 
 /// Shows a tooltip for the latest item, also where it is grey.
 void show_text(std::string_view text);
@@ -31,7 +49,8 @@ struct Choice {
   std::string help; ///< its tooltip
 };
 /// Draws the choice of that number into a rectangle.
-using Picture = void (*)(ImDrawList& list, ImVec2 low, ImVec2 high, std::size_t at, ImU32 colour);
+using Picture = void (*)(ImDrawList& list, ImVec2 low, ImVec2 high, std::size_t at,
+                         unsigned colour);
 /// Buttons in lines of `in_line`, of which one is chosen, with pictures above their names; null:
 /// names alone.
 bool one_of(std::span<const Choice> choices, std::size_t& chosen, std::size_t in_line,

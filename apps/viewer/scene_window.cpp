@@ -14,7 +14,7 @@
 #include <imgui.h>
 
 #include "gl/smooth_target.hpp"
-#include "viewer/control_list.hpp"
+#include "viewer/controls.hpp"
 #include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
 

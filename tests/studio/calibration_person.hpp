@@ -12,7 +12,7 @@
 #include "reference/wearers.hpp"
 #include "studio/calibration_screen.hpp"
 #include "support/open_window.hpp"
-#include "viewer/control_list.hpp"
+#include "viewer/controls.hpp"
 
 namespace nendo::test {
 

@@ -8,7 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "support/open_window.hpp"
-#include "viewer/control_list.hpp"
+#include "viewer/controls.hpp"
 
 namespace nendo::test {
 

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "viewer/control_list.hpp"
+#include "viewer/controls.hpp"
 
 namespace nendo::test {
 

@@ -11,7 +11,7 @@
 #include "support/open_window.hpp"
 #include "support/restraint.hpp"
 #include "viewer/command_widgets.hpp"
-#include "viewer/control_list.hpp"
+#include "viewer/controls.hpp"
 #include "viewer/timeline_window.hpp"
 
 namespace timeline_window_test {

@@ -10,7 +10,7 @@
 #include "support/memory_screen.hpp"
 #include "support/open_window.hpp"
 #include "support/restraint.hpp"
-#include "viewer/control_list.hpp"
+#include "viewer/controls.hpp"
 #include "viewer/live_window.hpp"
 #include "viewer/pointing.hpp"
 #include "viewer/puppet_editor.hpp"
