@@ -325,18 +325,16 @@ void CalibrationScreen::guide_keys() {
 }
 
 void CalibrationScreen::draw_panel(const viewer::SceneWindow& window) {
-  const float gap = em(gap_em), width = em(width_em), top = window.above_px() + gap;
+  const float gap = em(gap_em), top = window.above_px() + gap;
   const float high = ImGui::GetIO().DisplaySize.y - top - gap;
-  ImGui::SetNextWindowPos(ImVec2(gap, top));
-  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0.0F), ImVec2(width, std::max(em(3.0F), high)));
   const driver::GloveInfo& info = glove_.info();
   const std::string side(nendo::name_of(info.side));
   const std::string title = (stage_ == Stage::before ? "Calibrate the " + side + " hand"
                                                      : request_.user + ", " + side + " hand") +
                             "###calibration";
-  ImGui::Begin(title.c_str(), nullptr,
-               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoNavInputs);
+  viewer::begin_pane(title.c_str(), {gap, top}, {0.0F, 0.0F},
+                     {em(width_em), std::max(em(3.0F), high)},
+                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoNavInputs);
   if (!problem_.empty()) {
     wrapped(problem_, viewer::warning());
     viewer::note_control("problem", "");
@@ -368,13 +366,10 @@ void CalibrationScreen::draw_banner(const viewer::SceneWindow& window) const {
   const float left = static_cast<float>(covered_px());
   const float free_width = ImGui::GetIO().DisplaySize.x - left;
   const float width = std::min(free_width - 2.0F * em(gap_em), em(52.0F));
-  ImGui::SetNextWindowPos(ImVec2(left + free_width / 2.0F, window.above_px() + em(gap_em)),
-                          ImGuiCond_Always, ImVec2(0.5F, 0.0F));
-  ImGui::SetNextWindowSize(ImVec2(width, 0.0F));
-  ImGui::Begin("banner", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                   ImGuiWindowFlags_NoNav);
+  viewer::begin_pane("banner", {left + free_width / 2.0F, window.above_px() + em(gap_em)},
+                     {0.5F, 0.0F}, {width, 4096.0F},
+                     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
+                         ImGuiWindowFlags_NoNav);
   ImGui::PushFont(viewer::large_font());
   wrapped(words.instruction);
   viewer::note_control("instruction", "");

@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include "viewer/controls.hpp"
+#include "viewer/widgets.hpp"
 
 namespace nendo::studio {
 
@@ -11,10 +12,8 @@ bool show_waiting(viewer::SceneWindow& window, const std::string& text, const st
   window.leave_below(0);
   window.begin_picture({}, false);
   const ImVec2 all = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({all.x / 2.0F, all.y / 2.0F}, ImGuiCond_Always, {0.5F, 0.5F});
-  ImGui::Begin("waiting", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+  viewer::begin_pane("waiting", {all.x / 2.0F, all.y / 2.0F}, {0.5F, 0.5F}, {0.0F, 0.0F},
+                     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoNav);
   ImGui::TextUnformatted(text.c_str());
   const bool is_pressed = !button.empty() && viewer::button(button);
   ImGui::End();

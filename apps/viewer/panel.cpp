@@ -213,17 +213,14 @@ void LiveWindow::Panel::sections(const flow::Frame& frame, const Gauges& gauges)
 }
 
 void LiveWindow::Panel::draw_tools(const flow::Frame& frame, const Gauges& gauges, float top) {
-  const float gap = em(gap_em), width = em(width_em);
+  const float gap = em(gap_em);
   const float high = ImGui::GetIO().DisplaySize.y - status_bar_height() - gap - top;
-  ImGui::SetNextWindowPos(ImVec2(gap, top));
-  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0.0F), ImVec2(width, std::max(em(3.0F), high)));
   if (std::exchange(fold_asked, false)) ImGui::SetNextWindowCollapsed(!folded);
   // Without navigation, or Tab, which begins to edit a puppet, would also begin to edit a number.
   const std::string title = gauges.model + "###panel";
   const bool open =
-      ImGui::Begin(title.c_str(), nullptr,
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                       ImGuiWindowFlags_NoNavInputs | ImGuiWindowFlags_NoFocusOnAppearing);
+      begin_pane(title.c_str(), {gap, top}, {0.0F, 0.0F}, {em(width_em), std::max(em(3.0F), high)},
+                 ImGuiWindowFlags_NoNavInputs);
   folded = ImGui::IsWindowCollapsed();
   if (open) sections(frame, gauges);
   ImGui::End();
@@ -231,14 +228,8 @@ void LiveWindow::Panel::draw_tools(const flow::Frame& frame, const Gauges& gauge
 
 /// At the window's right, where tools of any length leave it in sight.
 void LiveWindow::Panel::draw_history(const flow::Frame& frame, float top) {
-  const float width = em(12.0F);
-  ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - em(gap_em), top), ImGuiCond_Always,
-                          ImVec2(1.0F, 0.0F));
-  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0.0F), ImVec2(width, em(20.0F)));
-  ImGui::Begin("history", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
-                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav |
-                   ImGuiWindowFlags_NoFocusOnAppearing);
+  begin_pane("history", {ImGui::GetIO().DisplaySize.x - em(gap_em), top}, {1.0F, 0.0F},
+             {em(12.0F), em(20.0F)}, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoNav);
   history(frame);
   ImGui::End();
 }
@@ -248,11 +239,8 @@ void LiveWindow::Panel::draw_hints() {
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   const float middle = (static_cast<float>(covered_px()) + all.x) / 2.0F;
   const float bottom = all.y - status_bar_height() - em(gap_em);
-  ImGui::SetNextWindowPos(ImVec2(middle, bottom), ImGuiCond_Always, ImVec2(0.5F, 1.0F));
-  ImGui::Begin("hints", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
-                   ImGuiWindowFlags_NoNav);
+  begin_pane("hints", {middle, bottom}, {0.5F, 1.0F}, {0.0F, 0.0F},
+             ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoNav);
   for (const auto& [keys, text] : commands::hints) {
     ImGui::TextColored(accent(), "%s", keys.data());
     ImGui::SameLine(em(4.0F));

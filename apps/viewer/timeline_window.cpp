@@ -65,11 +65,7 @@ struct TimelineWindow::Panel {
 
   void draw(const TimelineView& view, float above_px, EditActions& actions) {
     const float gap = em(gap_em), panel_width = em(width_em);
-    ImGui::SetNextWindowPos(ImVec2(gap, gap + above_px));
-    ImGui::SetNextWindowSizeConstraints(ImVec2(panel_width, 0.0F), ImVec2(panel_width, 4096.0F));
-    ImGui::Begin("Nendo: edit", nullptr,
-                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoFocusOnAppearing);
+    begin_pane("Nendo: edit", {gap, gap + above_px}, {0.0F, 0.0F}, {panel_width, 4096.0F}, 0);
     ImGui::PushTextWrapPos(panel_width - em(0.8F));
     file(view, actions);
     if (section("Key", "The selected key.", true)) key(view, actions);

@@ -141,6 +141,17 @@ inline bool takes_keys() {
   return !ImGui::GetIO().WantTextInput && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup);
 }
 
+/// Begins a window that stays where it is, as high as its contents. Its `corner`, from 0, 0 (top
+/// left) to 1, 1, is at `at`. `most` is its width, 0: as its contents, and its max height. Returns
+/// whether it is unfolded. ImGui::End() must follow.
+inline bool begin_pane(const char* title, ImVec2 at, ImVec2 corner, ImVec2 most, int flags) {
+  ImGui::SetNextWindowPos(at, ImGuiCond_Always, corner);
+  if (most.x > 0.0F) ImGui::SetNextWindowSizeConstraints({most.x, 0.0F}, most);
+  return ImGui::Begin(title, nullptr,
+                      flags | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                          ImGuiWindowFlags_NoFocusOnAppearing);
+}
+
 /// Begins a modal dialog in the window's centre. If it returns true, the dialog's buttons and
 /// ImGui::EndPopup() must follow.
 inline bool begin_question(const char* title) {
