@@ -76,7 +76,8 @@ private:
 
 EditSession::EditSession(Timeline timeline, deform::Mesh model, std::string out)
     : model_(std::move(model)), out_(std::move(out)), export_file_(export_name(out_)),
-      history_(std::move(timeline)), cache_(model_) {
+      history_(std::move(timeline)), cache_(model_),
+      pictures_(history_.timeline().units_per_metre) {
   follow_history();
 }
 
@@ -107,6 +108,7 @@ void EditSession::handle(const viewer::EditActions& actions) {
   if (actions.seek_s) seek(*actions.seek_s);
   if (actions.speed) head_.set_speed(*actions.speed);
   if (actions.tried) std::visit([this](const auto& tried) { try_out(tried); }, *actions.tried);
+  if (!actions.cells.empty()) set_cells(actions.cells);
   if (actions.keep) history_.keep();
   if (actions.drop) {
     history_.drop();
@@ -280,8 +282,29 @@ const viewer::TimelineView& EditSession::view() {
   const auto found = shape();
   view_.shape_is_old = !found.fresh;
   follow_functions(found.shape.get());
+  follow_pictures();
   if (progress.error) report(Result<void>(*progress.error), {});
   return view_;
+}
+
+/// The previous cells keep their pictures until others are drawn.
+void EditSession::set_cells(std::vector<viewer::StripPicture> cells) {
+  for (viewer::StripPicture& cell : cells)
+    for (const viewer::StripPicture& before : view_.pictures)
+      if (before.from_s == cell.from_s && before.to_s == cell.to_s) cell.image = before.image;
+  view_.pictures = std::move(cells);
+}
+
+void EditSession::follow_pictures() {
+  std::vector<ShapePictures::Shape> shapes;
+  for (const viewer::StripPicture& cell : view_.pictures) {
+    const auto found = cache_.nearest((cell.from_s + cell.to_s) / 2.0);
+    shapes.push_back(found.fresh ? found.shape : nullptr);
+  }
+  const auto pictures = pictures_.of(shapes);
+  for (std::size_t at = 0; at < pictures.size(); ++at)
+    if (pictures[at] != nullptr) view_.pictures[at].image = pictures[at];
+  has_all_pictures_ = !pictures.empty() && std::ranges::find(pictures, nullptr) == pictures.end();
 }
 
 /// Reads the curves again when more shapes are made.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "commands/edit_command.hpp"
+#include "edit/shape_pictures.hpp"
 #include "render/scene_frame.hpp"
 #include "timeline/edit_history.hpp"
 #include "timeline/hand_curve.hpp"
@@ -46,6 +47,8 @@ public:
   /// Returns the available shape that is nearest to the play head.
   timeline::ShapeCache::Found shape() const { return cache_.nearest(head_.time_s()); }
   timeline::ShapeCache::Progress progress() const { return cache_.progress(); }
+  /// Returns whether the last view had all pictures that were asked for, of the latest shapes.
+  bool has_all_pictures() const noexcept { return has_all_pictures_; }
 
   const timeline::EditHistory& history() const noexcept { return history_; }
 
@@ -71,6 +74,8 @@ private:
   void step_history(bool redoes);
   void follow_history();
   void follow_functions(const timeline::CachedShape* at_head);
+  void set_cells(std::vector<viewer::StripPicture> cells);
+  void follow_pictures();
   void follow_export();
   std::optional<timeline::KeyRef> key_of(const viewer::StripKey& key) const;
   commands::EditFacts facts() const noexcept;
@@ -81,6 +86,7 @@ private:
   std::string export_file_;
   timeline::EditHistory history_;
   timeline::ShapeCache cache_;
+  ShapePictures pictures_;
   timeline::PlayHead head_;
   std::unique_ptr<GlbExport> export_;
   std::vector<timeline::MovingHand> hands_; ///< in the order of the timeline's hands
@@ -90,6 +96,7 @@ private:
   CurvesOf curves_of_{-1.0, {}}; ///< those of the curves in view_
   viewer::TimelineView view_;
   render::SceneFrame scene_frame_;
+  bool has_all_pictures_ = false;
 };
 
 } // namespace nendo::edit

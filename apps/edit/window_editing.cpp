@@ -29,7 +29,7 @@ Result<void> WindowEditing::show() {
   }
   if (found.shape) window_->follow(found.shape->shape);
   const viewer::TimelineView& view = session_.view();
-  is_settled_ = found.fresh && !view.computing;
+  is_settled_ = found.fresh && !view.computing && session_.has_all_pictures();
   const viewer::EditActions actions = timeline_window_.show(view, session_.scene_frame());
   session_.handle(actions);
   quits_ = actions.quit;

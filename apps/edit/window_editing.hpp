@@ -23,7 +23,7 @@ public:
   Result<void> show();
   /// Shows the model again, after something else was shown in the window.
   void show_again();
-  /// Returns whether the last picture was final: its shape is that of the play head.
+  /// Returns whether the last picture was final: its shapes are those of their times.
   bool is_settled() const noexcept { return is_settled_; }
   /// Returns whether the user has asked to quit, in the last picture.
   bool quits() const noexcept { return quits_; }

@@ -19,7 +19,6 @@ using Eigen::Vector3f;
 
 namespace {
 
-constexpr int sky_side = 320;
 constexpr int sky_directions = 72;
 constexpr std::size_t maps_at_once = 8; // so that they fit a processor's cache
 constexpr float ground_light = 0.42F;   // what the ground gives back, of the sky's
@@ -136,7 +135,7 @@ private:
 
 std::vector<std::vector<float>> sky_parts(std::span<const Caster> casters,
                                           const std::vector<const Surface*>& surfaces,
-                                          unsigned threads) {
+                                          unsigned threads, int side) {
   std::vector<std::vector<float>> parts(surfaces.size());
   std::vector<LitPlaces> blocks;
   for (std::size_t number = 0; number < surfaces.size(); ++number) {
@@ -151,7 +150,7 @@ std::vector<std::vector<float>> sky_parts(std::span<const Caster> casters,
   for (std::size_t first = 0; first < toward.size(); first += maps_at_once) {
     const std::size_t count = std::min(maps_at_once, toward.size() - first);
     each_in_parallel(count, threads, [&](std::size_t at) {
-      maps[at] = SkyMap{toward[first + at], DepthMap(casters, toward[first + at], sky_side)};
+      maps[at] = SkyMap{toward[first + at], DepthMap(casters, toward[first + at], side)};
     });
     // Each place takes the directions in one order, so that its sum is the same for any threads.
     each_in_parallel(blocks.size(), threads,
@@ -234,8 +233,6 @@ std::vector<std::uint32_t> coarse_corners(std::span<const Vector3f> places,
 
 namespace {
 
-constexpr int shadow_side = 2048;
-
 bool casts(const Surface& surface) {
   return surface.material.opacity > 0.0F;
 }
@@ -249,14 +246,14 @@ std::vector<Caster> casters_of(const Scene& scene, const Surface& model) {
   return casters;
 }
 
-Skies skies_of(const Scene& scene, std::span<const Caster> casters, unsigned threads) {
+Skies skies_of(const Scene& scene, std::span<const Caster> casters, unsigned threads, int side) {
   const Surface nothing;
   std::vector<const Surface*> surfaces{&scene.model};
   for (const Surface& veil : scene.veils)
     surfaces.push_back(casts(veil) ? &veil : &nothing);
   for (const Surface& ground : scene.grounds)
     surfaces.push_back(&ground);
-  auto parts = sky_parts(casters, surfaces, threads); // in this order
+  auto parts = sky_parts(casters, surfaces, threads, side); // in this order
   const auto first_veil = std::next(parts.begin());
   const auto first_ground = std::next(first_veil, std::ssize(scene.veils));
   Skies skies;
@@ -276,7 +273,8 @@ Vector3f turned(const Vector3f& direction, double azimuth_deg) {
       .normalized();
 }
 
-Lighting::Lighting(const Scene& scene, double azimuth_deg, unsigned threads) : scene_(&scene) {
+Lighting::Lighting(const Scene& scene, double azimuth_deg, unsigned threads, int samples)
+    : scene_(&scene) {
   const std::vector<Caster> casters = casters_of(scene, scene.model);
   // A sample of the sky's maps is wider than many triangles of a dense model.
   const Surface coarse = is_dense(scene.model) ? coarse_surface(scene.model) : Surface();
@@ -287,9 +285,9 @@ Lighting::Lighting(const Scene& scene, double azimuth_deg, unsigned threads) : s
   Skies skies;
   each_in_parallel(2, threads, [&](std::size_t at) { // the first is short, the second has threads
     if (at == 0)
-      key_shadow.emplace(casters, key, shadow_side);
+      key_shadow.emplace(casters, key, samples);
     else
-      skies = skies_of(scene, sky_casters, threads);
+      skies = skies_of(scene, sky_casters, threads, samples * 5 / 32);
   });
   maps_ = std::make_unique<Maps>(Maps{{key, {1.42F, 1.35F, 1.25F}},
                                       {turned(fill_direction, azimuth_deg), {0.22F, 0.27F, 0.34F}},

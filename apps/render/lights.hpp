@@ -12,10 +12,11 @@
 namespace nendo::render {
 
 /// Returns, for each place of each surface, how much of the sky and of the light that the ground
-/// gives back it sees, 0 to about 1. Uses `threads` threads; their number does not change a bit.
+/// gives back it sees, 0 to about 1. The sky's maps have `side` samples along a side. Uses
+/// `threads` threads; their number does not change a bit.
 std::vector<std::vector<float>> sky_parts(std::span<const Caster> casters,
                                           const std::vector<const Surface*>& surfaces,
-                                          unsigned threads);
+                                          unsigned threads, int side = 320);
 
 /// Returns whether the sky's light sees a coarser stand-in of the surface.
 bool is_dense(const Surface& surface) noexcept;

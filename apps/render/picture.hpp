@@ -20,8 +20,10 @@ class Lighting {
 public:
   /// Places the lights relative to a camera that looks from that azimuth, so that every view shows
   /// the shapes well. The scene must not change while this is used. Uses `threads` threads. Takes
-  /// some tenths of a second; above a million triangles, about a second. Allocates.
-  explicit Lighting(const Scene& scene, double azimuth_deg = 0.0, unsigned threads = 2);
+  /// some tenths of a second; above a million triangles, about a second. Allocates. `samples` are
+  /// those of the key light's shadow along a side; 512 are enough for pictures of 100 pixels.
+  explicit Lighting(const Scene& scene, double azimuth_deg = 0.0, unsigned threads = 2,
+                    int samples = 2048);
   ~Lighting();
   Lighting(Lighting&&) noexcept;
 

@@ -3,11 +3,10 @@
 #include <string>
 #include <type_traits>
 
-#include <GL/gl.h>
-#include <imgui.h>
-
 #include "viewer/controls.hpp"
 #include "viewer/theme.hpp"
+#include <GL/gl.h>
+#include <imgui.h>
 
 namespace nendo::viewer {
 namespace {
@@ -42,6 +41,13 @@ CardPicture::~CardPicture() {
   glDeleteTextures(1, &texture_);
 }
 
+void draw_picture(ImDrawList& list, const CardPicture& picture, const ImVec2& low,
+                  const ImVec2& high, float part, float rounding) {
+  const float beside = (1.0F - part) / 2.0F;
+  list.AddImageRounded(imgui_texture(picture.texture()), low, high, {beside, 0.0F},
+                       {1.0F - beside, 1.0F}, IM_COL32_WHITE, rounding);
+}
+
 bool picture_card(std::string_view name, const CardPicture* picture, float ratio, float width,
                   bool is_chosen) {
   const std::string text(name);
@@ -59,9 +65,7 @@ bool picture_card(std::string_view name, const CardPicture* picture, float ratio
   const auto colour = [&](ImGuiCol one) { return ImGui::GetColorU32(style.Colors[one]); };
   list.AddRectFilled(low, high, colour(is_pointed_at ? ImGuiCol_HeaderHovered : ImGuiCol_FrameBg),
                      round);
-  if (picture != nullptr)
-    list.AddImageRounded(imgui_texture(picture->texture()), low, picture_high, {0.0F, 0.0F},
-                         {1.0F, 1.0F}, IM_COL32_WHITE, round);
+  if (picture != nullptr) draw_picture(list, *picture, low, picture_high, 1.0F, round);
   const bool is_marked = is_chosen || is_pointed_at;
   list.AddRect(low, high, is_marked ? ImGui::GetColorU32(accent()) : colour(ImGuiCol_Border), round,
                0, (is_chosen ? 2.5F : 1.0F) * scale());

@@ -5,6 +5,9 @@
 
 #include "render/image.hpp"
 
+struct ImDrawList;
+struct ImVec2;
+
 namespace nendo::viewer {
 
 /// A picture in the memory of the graphics card.
@@ -20,6 +23,10 @@ public:
 private:
   unsigned texture_ = 0;
 };
+
+/// Draws the middle of a picture, that part of its width, into a rectangle.
+void draw_picture(ImDrawList& list, const CardPicture& picture, const ImVec2& low,
+                  const ImVec2& high, float part = 1.0F, float rounding = 0.0F);
 
 /// A button `width` pixels wide with a picture, and its name below. Null: an empty frame of
 /// `ratio` times its height. Tests press it by its name.

@@ -36,14 +36,19 @@ struct StripColours {
   ImU32 head_colour = selected_colour, shade = ImGui::GetColorU32(accent(0.16F));
 };
 
+using Pictures = std::map<std::shared_ptr<const render::Image>, CardPicture>;
+
 class StripDrawing {
 public:
-  StripDrawing(const DopeSheet& strip, const TimelineView& view, const StripLook& look)
-      : strip_(strip), view_(view), look_(look), list_(*ImGui::GetWindowDrawList()) {}
+  StripDrawing(const DopeSheet& strip, const TimelineView& view, const Pictures& pictures,
+               const StripLook& look)
+      : strip_(strip), view_(view), pictures_(pictures), look_(look),
+        list_(*ImGui::GetWindowDrawList()) {}
 
   void draw() {
     grounds();
     rule();
+    pictures();
     if (look_.shaded) shade_times(*look_.shaded);
     for (std::size_t lane = 0; lane < view_.lanes.size(); ++lane)
       keys_of(lane);
@@ -90,6 +95,26 @@ private:
     list_.AddRectFilled(at(begin, top), at(end, bottom), colours_.not_computed);
     const double so_far = std::clamp(x_of(view_.computed_s), begin, end);
     list_.AddRectFilled(at(begin, top), at(so_far, bottom), colours_.computed);
+  }
+
+  // As wide as its cell, which shows the middle of a wide picture.
+  void pictures() const {
+    constexpr double top = DopeSheet::ruler, bottom = top + DopeSheet::pictures;
+    text(6.0, (top + bottom) / 2.0 - 7.0, colours_.words, "shape");
+    list_.PushClipRect(at(DopeSheet::left, top), at(width(), bottom), true);
+    for (const StripPicture& cell : view_.pictures) {
+      const double from = strip_.x_of(cell.from_s), to = strip_.x_of(cell.to_s);
+      const ImVec2 low = at(from + 0.5, top + 1.0), high = at(to - 0.5, bottom - 1.0);
+      const auto found = pictures_.find(cell.image);
+      if (found == pictures_.end()) {
+        list_.AddRectFilled(low, high, colours_.lane_ground);
+        continue;
+      }
+      const auto& [across, down] = cell.image->size();
+      const double shown = (to - from - 1.0) / (DopeSheet::pictures - 2.0) * down / across;
+      draw_picture(list_, found->second, low, high, static_cast<float>(shown));
+    }
+    list_.PopClipRect();
   }
 
   // A line at each; the numbers come later, over the play head.
@@ -184,6 +209,7 @@ private:
 
   const DopeSheet& strip_;
   const TimelineView& view_;
+  const Pictures& pictures_;
   const StripLook& look_;
   ImDrawList& list_;
   const float scale_ = scale();
@@ -245,9 +271,19 @@ void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retimin
     look.pointed_at = strip_.key_at(view.lanes, x, y);
     if (!taken_) show_tooltip_at(view, strip_, x, y);
   }
-  StripDrawing(strip_, view, look).draw();
+  follow_pictures(view.pictures);
+  StripDrawing(strip_, view, pictures_, look).draw();
+  actions.cells = strip_.cells();
   ImGui::End();
   ImGui::PopStyleVar(2);
+}
+
+void DopeSheetWidget::follow_pictures(const std::vector<StripPicture>& shown) {
+  for (const StripPicture& cell : shown)
+    if (cell.image) pictures_.try_emplace(cell.image, *cell.image);
+  std::erase_if(pictures_, [&](const auto& one) {
+    return std::ranges::find(shown, one.first, &StripPicture::image) == shown.end();
+  });
 }
 
 void DopeSheetWidget::controls(const TimelineView& view, EditActions& actions) const {

@@ -1,8 +1,12 @@
 #pragma once
-// The dope sheet below the scene: play head, keys and marks, which the mouse can move.
+// The dope sheet below the scene: pictures of the shape, and play head, keys and marks, which the
+// mouse can move.
 
+#include <map>
+#include <memory>
 #include <optional>
 
+#include "viewer/card_picture.hpp"
 #include "viewer/timeline_view.hpp"
 
 namespace nendo::viewer {
@@ -20,11 +24,14 @@ private:
     double pressed_x = 0.0;
     bool moved = false;
   };
+  void follow_pictures(const std::vector<StripPicture>& shown);
   void controls(const TimelineView& view, EditActions& actions) const;
   void follow_mouse(const TimelineView& view, double x, double y, EditActions& actions);
   void press(const TimelineView& view, double x, double y, EditActions& actions);
   void drag(const TimelineView& view, double x, EditActions& actions);
 
+  /// On the graphics card, those that the strip shows now.
+  std::map<std::shared_ptr<const render::Image>, CardPicture> pictures_;
   DopeSheet strip_;
   std::optional<Taken> taken_; ///< a key that the mouse holds
   bool scrubs_ = false;

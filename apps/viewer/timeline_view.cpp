@@ -34,7 +34,7 @@ double DopeSheet::time_at(double x) const noexcept {
 }
 
 double DopeSheet::middle_of(std::size_t number) noexcept {
-  return ruler + lane * (static_cast<double>(number) + 0.5);
+  return ruler + pictures + lane * (static_cast<double>(number) + 0.5);
 }
 
 void DopeSheet::zoom(double x, double steps) noexcept {
@@ -58,8 +58,9 @@ void DopeSheet::follow(double time_s) noexcept {
 
 std::optional<StripKey> DopeSheet::key_at(std::span<const StripLane> lanes, double x,
                                           double y) const {
-  if (y < ruler) return std::nullopt;
-  const auto number = static_cast<std::size_t>((y - ruler) / lane);
+  constexpr double top = ruler + pictures;
+  if (y < top) return std::nullopt;
+  const auto number = static_cast<std::size_t>((y - top) / lane);
   if (number >= lanes.size()) return std::nullopt;
   const auto& keys_s = lanes[number].keys_s;
   const double time_s = first_s_ + (x - left) / span_px() * (last_s_ - first_s_);
@@ -88,6 +89,17 @@ std::optional<std::size_t> DopeSheet::mark_at(std::span<const StripMark> marks, 
     found = mark;
   }
   return found;
+}
+
+std::vector<StripPicture> DopeSheet::cells() const {
+  const double narrowest_s = narrowest / span_px() * (last_s_ - first_s_);
+  const double length_s = std::exp2(std::ceil(std::log2(narrowest_s)));
+  std::vector<StripPicture> cells;
+  for (double number = std::floor(first_s_ / length_s);; number += 1.0) {
+    const double from_s = number * length_s;
+    if (from_s >= std::min(last_s_, duration_s_) && !cells.empty()) return cells;
+    cells.push_back({from_s, std::min(from_s + length_s, duration_s_)});
+  }
 }
 
 double DopeSheet::ruler_step_s() const noexcept {

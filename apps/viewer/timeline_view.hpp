@@ -3,6 +3,7 @@
 // independent of timelines, and the editor of the window.
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include <nendo/hand/skeleton.hpp>
 
 #include "commands/edit_command.hpp"
+#include "render/image.hpp"
 
 namespace nendo::viewer {
 
@@ -20,6 +22,14 @@ namespace nendo::viewer {
 struct StripLane {
   Side side = Side::right;
   std::vector<double> keys_s; ///< in rising order
+};
+
+/// A cell of the strip with a picture of the shape.
+struct StripPicture {
+  double from_s = 0.0;
+  double to_s = 0.0;
+  std::shared_ptr<const render::Image>
+      image{}; ///< the shape in the cell's middle; null: not drawn yet
 };
 
 struct StripMark {
@@ -34,19 +44,21 @@ struct StripKey {
 };
 
 /// Maps the visible part of a timeline to pixels of the strip, from its top left corner, and finds
-/// the key or mark at the pointer. From top to bottom, the strip has a ruler, the lanes and the
-/// marks.
+/// the key or mark at the pointer. From top to bottom, the strip has a ruler, pictures of the
+/// shape, the lanes and the marks.
 class DopeSheet {
 public:
-  static constexpr double left = 58.0;    ///< px, the width of the names
-  static constexpr double right = 14.0;   ///< px, for half a key
-  static constexpr double ruler = 24.0;   ///< height
-  static constexpr double lane = 26.0;    ///< height
-  static constexpr double reach = 8.0;    ///< pixels from the pointer to a key or mark
-  static constexpr double closest = 0.02; ///< s, the shortest visible part
+  static constexpr double left = 58.0;      ///< px, the width of the names
+  static constexpr double right = 14.0;     ///< px, for half a key
+  static constexpr double ruler = 24.0;     ///< height
+  static constexpr double pictures = 56.0;  ///< height
+  static constexpr double lane = 26.0;      ///< height
+  static constexpr double narrowest = 70.0; ///< px, of a picture; the widest is twice as wide
+  static constexpr double reach = 8.0;      ///< pixels from the pointer to a key or mark
+  static constexpr double closest = 0.02;   ///< s, the shortest visible part
 
   static double height_for(std::size_t lanes) noexcept {
-    return ruler + lane * static_cast<double>(lanes + 1);
+    return ruler + pictures + lane * static_cast<double>(lanes + 1);
   }
 
   /// Sets the strip's width in pixels and the timeline's duration. Keeps the visible part, limited
@@ -72,6 +84,10 @@ public:
   /// Returns the nearest mark at the pointer, if any.
   std::optional<std::size_t> mark_at(std::span<const StripMark> marks, std::size_t lanes, double x,
                                      double y) const;
+  /// Returns the cells of the visible part, without their pictures. They have the same length, a
+  /// power of two, but for the last one, which ends with the timeline. So they stay when the strip
+  /// is panned, and every second one when it is zoomed.
+  std::vector<StripPicture> cells() const;
   /// Returns the interval of the ruler's labels: 1, 2 or 5 times a power of ten, so that labels do
   /// not overlap.
   double ruler_step_s() const noexcept;
@@ -99,6 +115,7 @@ struct TimelineView {
   double rate_hz = 90.0; ///< frames per second
   std::vector<StripLane> lanes;
   std::vector<StripMark> marks;
+  std::vector<StripPicture> pictures;   ///< the cells that EditActions asked for
   std::vector<FunctionCurve> functions; ///< empty without a puppet
 
   double head_s = 0.0;
@@ -143,7 +160,8 @@ struct EditActions {
   std::optional<double> seek_s;
   std::optional<double> speed;
   std::optional<std::variant<KeyDrag, TipDrag, KeyBlend>> tried;
-  bool keep = false; ///< the trial edit becomes a step
+  std::vector<StripPicture> cells; ///< the next view should have their pictures
+  bool keep = false;               ///< the trial edit becomes a step
   bool drop = false;
   std::optional<Retiming> retiming;
   std::vector<EditCommand> commands;

@@ -63,9 +63,11 @@ struct TimelineWindow::Panel {
   float blend = 0.0F;
   bool blends = false; ///< the mouse holds the slider
 
-  void draw(const TimelineView& view, float above_px, EditActions& actions) {
-    const float gap = em(gap_em), panel_width = em(width_em);
-    begin_pane("Nendo: edit", {gap, gap + above_px}, {0.0F, 0.0F}, {panel_width, 4096.0F}, 0);
+  /// Above the strip, where it is scrolled if it is too long.
+  void draw(const TimelineView& view, const SceneWindow& window, EditActions& actions) {
+    const float gap = em(gap_em), panel_width = em(width_em), top = gap + window.above_px();
+    const float high = static_cast<float>(window.scene_size().height) - gap - top;
+    begin_pane("Nendo: edit", {gap, top}, {0.0F, 0.0F}, {panel_width, std::max(em(3.0F), high)}, 0);
     ImGui::PushTextWrapPos(panel_width - em(0.8F));
     file(view, actions);
     if (section("Key", "The selected key.", true)) key(view, actions);
@@ -131,25 +133,29 @@ private:
                                     : "the head is elsewhere: click the key to bend its fingers");
   }
 
-  /// A curve for each over the whole timeline, with a line at the play head.
+  /// A line for each: its value, and its curve over the whole timeline with the play head.
   static void functions(const TimelineView& view) {
-    const auto head =
-        static_cast<float>(view.duration_s > 0.0 ? view.head_s / view.duration_s : 0.0);
-    const float width = ImGui::GetContentRegionAvail().x;
+    const double head = view.duration_s > 0.0 ? view.head_s / view.duration_s : 0.0;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(em(0.5F), em(0.15F)));
     for (const FunctionCurve& function : view.functions) {
       char words[96];
       std::snprintf(words, sizeof words, "%s %.2f", function.name.c_str(), function.value);
-      ImGui::PushID(function.name.c_str());
-      ImGui::PlotLines("##curve", function.over_time.data(),
-                       static_cast<int>(function.over_time.size()), 0, words, -1.1F, 1.1F,
-                       ImVec2(width, em(2.6F)));
-      ImGui::PopID();
+      ImGui::AlignTextToFramePadding();
+      ImGui::TextUnformatted(words);
+      note_control("function " + function.name, words);
+      show_text("The value of " + function.name + " at the play head, and its curve.");
+      ImGui::SameLine(em(10.8F));
+      const auto& values = function.over_time;
+      const bool is_signed = std::ranges::any_of(values, [](float one) { return one < -0.05F; });
+      ImGui::PlotLines(("##" + function.name).c_str(), values.data(),
+                       static_cast<int>(values.size()), 0, nullptr, is_signed ? -1.0F : 0.0F, 1.0F,
+                       ImVec2(ImGui::GetContentRegionAvail().x, em(1.7F)));
       const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-      const float x = low.x + head * (high.x - low.x);
+      const float x = low.x + static_cast<float>(head) * (high.x - low.x);
       ImGui::GetWindowDrawList()->AddLine({x, low.y}, {x, high.y}, ImGui::GetColorU32(warning()),
                                           1.5F * scale());
-      note_control("function " + function.name, words);
     }
+    ImGui::PopStyleVar();
   }
 
   void whole(const TimelineView& view, EditActions& actions) {
@@ -177,7 +183,7 @@ EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFr
   mark_tips(view, scene_frame);
   panel_->strip.draw(view, panel_->retiming_shown ? std::optional(panel_->retiming) : std::nullopt,
                      actions);
-  panel_->draw(view, window_->above_px(), actions);
+  panel_->draw(view, *window_, actions);
   panel_->keys(view, *window_, actions);
   if (window_->take_close_request()) actions.quit = true;
   window_->end_picture();

@@ -71,6 +71,67 @@ struct Edited {
 } // namespace
 
 TEST_SUITE("edit_session") {
+  TEST_CASE("pictures show the shapes of their times, and an edit replaces those that it changes") {
+    Edited edited;
+    std::vector<viewer::StripPicture> cells;
+    for (double from_s = 0.0; from_s < edited.first.duration_s; from_s += 0.125)
+      cells.push_back({from_s, std::min(from_s + 0.125, edited.first.duration_s)});
+    EditActions asks;
+    asks.cells = cells;
+    const auto drawn = [&] { // as picture after picture of the window asks for them
+      do {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        edited.session.handle(asks);
+        edited.session.view();
+      } while (!edited.session.has_all_pictures());
+      return edited.session.view().pictures;
+    };
+    /// Those of the player's shapes.
+    const auto played = [&] {
+      auto player = Player::make(edited.now(), edited.model);
+      REQUIRE(player);
+      std::vector<ShapePictures::Shape> shapes;
+      while ((*player)->next()) {
+        CachedShape shape;
+        shape.shape = (*player)->frame().shape;
+        shape.model = (*player)->model(0);
+        shapes.push_back(std::make_shared<CachedShape>(std::move(shape)));
+      }
+      std::vector<ShapePictures::Shape> wanted;
+      for (const auto& cell : cells)
+        wanted.push_back(shapes[static_cast<std::size_t>(
+            std::lround((cell.from_s + cell.to_s) / 2.0 * edited.now().rate_hz))]);
+      ShapePictures pictures(edited.now().units_per_metre);
+      auto found = pictures.of(wanted);
+      for (; std::ranges::find(found, nullptr) != found.end(); found = pictures.of(wanted))
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      return found;
+    };
+    const auto check_all = [&](const std::vector<viewer::StripPicture>& seen) {
+      const auto expected = played();
+      REQUIRE(seen.size() == expected.size());
+      for (std::size_t at = 0; at < seen.size(); ++at)
+        CHECK(*seen[at].image == *expected[at]);
+    };
+    const auto before = drawn();
+    check_all(before);
+    CHECK_FALSE(*before.front().image == *before.back().image);
+
+    const std::size_t key = edited.now().hands[1].keys.size() - 2;
+    edited.try_out(KeyDrag{{1, key}, edited.key(1, key).time_s + 0.02}, true);
+    for (const auto& cell : edited.session.view().pictures)
+      CHECK(cell.image != nullptr); // the old ones until there are others
+    const auto after = drawn();
+    check_all(after);
+    std::size_t kept = 0;
+    while (kept < cells.size() && after[kept].image == before[kept].image)
+      ++kept;
+    CHECK(kept > 0);
+    CHECK(kept < cells.size());
+    CHECK(cells[kept].to_s > edited.key(1, key - 1).time_s);
+    CHECK_FALSE(*after[kept].image == *before[kept].image);
+  }
+
   TEST_CASE("a puppet is edited, mirrored, undone and saved like hands that touch the model") {
     Edited edited(true);
     CHECK(edited.session.view().marks[1].name == "smileRight listens to right.wrist_yaw");

@@ -133,6 +133,36 @@ TEST_SUITE("dope_sheet") {
     CHECK_FALSE(strip.mark_at(marks, 2, strip.x_of(3.0), DopeSheet::middle_of(1)));
   }
 
+  TEST_CASE("pictures are at even distances over all that is seen, and stay when it is panned") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> any(0.0, 1.0);
+    for (const double duration_s : {0.3, 4.0, 777.7, 1e6}) {
+      DopeSheet strip = strip_of(duration_s);
+      for (int step = 0; step < 100; ++step) {
+        strip.zoom(width * any(random), 4.0 * any(random) - 2.0);
+        const auto cells = strip.cells();
+        REQUIRE_FALSE(cells.empty());
+        CHECK(cells.front().from_s <= strip.first_s());
+        CHECK(cells.back().to_s >= strip.last_s() * (1 - 1e-12));
+        CHECK(cells.back().to_s <= duration_s);
+        const double length_s = cells.front().to_s - cells.front().from_s;
+        for (std::size_t at = 0; at < cells.size(); ++at) {
+          CHECK(cells[at].image == nullptr);
+          CHECK(cells[at].from_s ==
+                doctest::Approx(cells.front().from_s + static_cast<double>(at) * length_s));
+          if (cells[at].to_s == duration_s) continue; // which cuts it
+          const double px = strip.x_of(cells[at].to_s) - strip.x_of(cells[at].from_s);
+          CHECK(px >= DopeSheet::narrowest * (1 - 1e-9));
+          CHECK(px <= 2.0 * DopeSheet::narrowest * (1 + 1e-9));
+        }
+        strip.pan(30.0 * any(random));
+        for (const StripPicture& cell : strip.cells())
+          if (cell.to_s < duration_s) CHECK(std::fmod(cell.from_s, cell.to_s - cell.from_s) == 0.0);
+      }
+    }
+    CHECK(strip_of(0.0).cells().size() == 1);
+  }
+
   TEST_CASE("the ruler's numbers are round and do not overlap") {
     for (const double duration_s : {0.1, 0.7, 3.0, 42.0, 999.0, 1e6}) {
       const DopeSheet strip = strip_of(duration_s);

@@ -131,6 +131,8 @@ TEST_SUITE("timeline_window") {
          {WindowLook{{1280, 720}, Theme::light, 1.0F}, WindowLook{{1920, 1080}, Theme::dark, 1.5F},
           WindowLook{{3840, 2160}, Theme::light, 2.0F}}) {
       Seat seat(look);
+      for (const char* const name : {"jawOpen", "mouthSmileLeft", "mouthSmileRight", "browUpRight"})
+        seat.view.functions.push_back({name, -0.25, {0.0F, 0.5F, -0.25F, 1.0F}});
       const auto pressed = seat.press(seat.on_key(1, 2));
       REQUIRE(pressed.select);
       CHECK(*pressed.select == StripKey{1, 2});
@@ -209,6 +211,33 @@ TEST_SUITE("timeline_window") {
     const Vector2d middle = desk.seat->seen_at(scene.stage_camera().target);
     CHECK(middle.x() == doctest::Approx((310.0 + scene.scene_size().width) / 2.0).epsilon(1e-3));
     CHECK(middle.y() == doctest::Approx(scene.scene_size().height / 2.0).epsilon(1e-3));
+  }
+
+  TEST_CASE("pictures are shown where the strip asked for them, also when it is zoomed") {
+    const Desk desk;
+    if (!desk.seat) return;
+    Seat& seat = *desk.seat;
+    for (const double wheel : {0.0, 6.0, 0.0}) {
+      seat.input.wheel = wheel;
+      seat.move(seat.on_strip(1.0, DopeSheet::middle_of(0)), false);
+      seat.input.wheel = 0.0;
+      if (wheel > 0.0) seat.strip.zoom(seat.strip.x_of(1.0), wheel);
+      const auto cells = seat.move({400.0, 200.0}, false).cells;
+      seat.view.pictures = cells;
+      for (std::size_t at = 0; at < cells.size(); ++at)
+        seat.view.pictures[at].image = std::make_shared<const Image>(
+            Size{280, 112}, at % 2 == 0 ? Pixel{200, 0, 0} : Pixel{0, 200, 0});
+      seat.view.pictures.back().image = nullptr;
+      seat.show();
+      const Image shown = seat.window->scene_window().screenshot();
+      REQUIRE(cells.size() > 3);
+      for (std::size_t at = 1; at + 1 < cells.size(); ++at) {
+        const Vector2d middle = seat.on_strip((cells[at].from_s + cells[at].to_s) / 2.0,
+                                              DopeSheet::ruler + DopeSheet::pictures / 2.0);
+        CHECK(shown.at(static_cast<int>(middle.x()), static_cast<int>(middle.y())) ==
+              (at % 2 == 0 ? Pixel{200, 0, 0} : Pixel{0, 200, 0}));
+      }
+    }
   }
 
   TEST_CASE("the wheel zooms about the pointer") {
