@@ -68,7 +68,7 @@ public:
       }
     }
   }
-  void report(const std::string& message) override { server_->report(message); }
+  void report(const Report& message) override { server_->report(message.text); }
 
 private:
   Result<void> check(const deform::BlockLayout& layout) const {

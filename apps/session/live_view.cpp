@@ -69,7 +69,10 @@ public:
     window_->set_model(status.model.layout(),
                        SceneBuilder(status.model.mesh, status.frame.units_per_metre));
   }
-  void report(const std::string& message) override { gauges_.report = message; }
+  void report(const Report& message) override {
+    gauges_.report = message.text;
+    gauges_.report_is_error = message.is_error;
+  }
   bool sets_pace() const noexcept override { return true; }
   const PictureTimes* picture_times() const noexcept override { return &window_->picture_times(); }
   bool stays_open() const noexcept override { return true; }

@@ -15,6 +15,7 @@
 #include "commands/commands.hpp"
 #include "gloves/device_status.hpp"
 #include "session/place_loop.hpp"
+#include "session/report.hpp"
 #include "viewer/picture_times.hpp"
 
 namespace nendo::session {
@@ -53,7 +54,7 @@ public:
   /// Called repeatedly while the loop runs. Appends the requests since the last call.
   virtual void update(const RunStatus& status, Asks& asks) = 0;
   /// Shows a message about a command to the user.
-  virtual void report(const std::string& message) { static_cast<void>(message); }
+  virtual void report(const Report& message) { static_cast<void>(message); }
   /// Returns whether update() waits by itself, as a window does for its screen.
   virtual bool sets_pace() const noexcept { return false; }
   /// Returns whether the run continues after all gloves have ended (Glove::has_ended()), until the

@@ -93,7 +93,7 @@ void RunCommands::execute(const Asks& asks) {
     try {
       dispatch(one);
     } catch (const std::bad_alloc&) {
-      report_("No memory!"); // short enough to need none
+      report_({"No memory!", true}); // short enough to need none
     }
   };
   for (const Ask& ask : asks)
@@ -105,23 +105,24 @@ void RunCommands::execute(const Asks& asks) {
       execute_one(command);
     const std::uint64_t refused = from_take.counters().refused;
     if (std::exchange(take_refused_, refused) != refused)
-      report_("The run was too busy and dropped changes of the recording: " +
-              std::to_string(refused) + " so far.");
+      report_({"The run was too busy and dropped changes of the recording: " +
+                   std::to_string(refused) + " so far.",
+               true});
   }
   for (auto& wrist : wrists_)
     if (wrist && for_loop_.try_push(*wrist)) wrist.reset(); // if it is full, the newest waits
-  report(for_loop_.dropped());
+  if (auto dropped = for_loop_.dropped()) report_({*std::move(dropped), true});
 }
 
 void RunCommands::dispatch(const flow::Command& command) {
   if (options_.hands_only && !is_for_hands(command))
-    return report_("there is no model; `nendo run` shapes one");
+    return report_({"there is no model; `nendo run` shapes one", true});
   std::visit([this](const auto& one) { execute(one); }, command);
 }
 
 void RunCommands::execute(const flow::WristMove& move) {
   if (!move.is_usable()) {
-    if (!std::exchange(move_refused_, true)) report_(std::string(flow::WristMove::refusal));
+    if (!std::exchange(move_refused_, true)) report_({std::string(flow::WristMove::refusal), true});
     return;
   }
   move_refused_ = false;
@@ -129,7 +130,7 @@ void RunCommands::execute(const flow::WristMove& move) {
 }
 
 void RunCommands::execute(const flow::Mark& mark) {
-  if (!recorder_.is_recording()) return report_(commands::no_recording);
+  if (!recorder_.is_recording()) return report_({commands::no_recording, true});
   if (for_loop_.push(mark)) report_("mark " + std::to_string(++marks_) + " is in the recording");
 }
 

@@ -51,12 +51,12 @@ private:
 
 class RunCommands {
 public:
-  using Report = std::function<void(const std::string& message)>;
+  using Reporter = std::function<void(const Report& message)>;
 
   /// All arguments must outlive this. `placed` must have its loop before the first call, except
   /// ring(). Main thread.
   RunCommands(const RunOptions& options, const PlacedLoop& placed, const std::vector<Sink*>& sinks,
-              RunRecorder& recorder, RunModels& models, RunSaving& saving, Report report)
+              RunRecorder& recorder, RunModels& models, RunSaving& saving, Reporter report)
       : options_(options), placed_(placed), sinks_(sinks), recorder_(recorder), models_(models),
         saving_(saving), report_(std::move(report)) {}
 
@@ -115,7 +115,7 @@ private:
   void edit_masks();
   void change_puppet();
   void follow_taken_puppet();
-  void report(const std::optional<std::string>& message) const {
+  void report(const std::optional<Report>& message) const {
     if (message) report_(*message);
   }
 
@@ -125,7 +125,7 @@ private:
   RunRecorder& recorder_;
   RunModels& models_;
   RunSaving& saving_;
-  Report report_;
+  Reporter report_;
   LoopCommands for_loop_{256};
   std::array<std::optional<flow::WristMove>, 2> wrists_; ///< not passed on yet
   bool move_refused_ = false;                            ///< a refused wrist move was reported

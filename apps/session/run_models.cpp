@@ -55,19 +55,19 @@ Result<void> RunModels::prepare(const flow::ModelVersion& version) {
   return {};
 }
 
-std::optional<std::string> RunModels::go_to(const flow::Awaited& awaited) {
+std::optional<Report> RunModels::go_to(const flow::Awaited& awaited) {
   flow::DeformLoop& loop = *placed_.loop;
   if (is_handing_over() || loop.changes().is_changing())
     return std::nullopt; // the request is repeated
   const auto version = loop.changes().model(awaited.model);
   if (version != nullptr && version.get() != &loop.changes().newest_model())
-    if (const auto prepared = prepare(*version); !prepared) return prepared.error().message;
+    if (const auto prepared = prepare(*version); !prepared) return Report(prepared.error());
   const auto changed = loop.changes().change_to(awaited);
   if (changed) return std::nullopt;
-  return changed.error().message + "; nothing changed";
+  return Report(changed.error().message + "; nothing changed", true);
 }
 
-std::optional<std::string> RunModels::follow(bool may_begin) {
+std::optional<Report> RunModels::follow(bool may_begin) {
   using std::chrono::seconds;
   flow::DeformLoop& loop = *placed_.loop;
   if (stage_ == Stage::handing_over && !loop.changes().is_changing()) stage_ = Stage::none;
@@ -76,7 +76,7 @@ std::optional<std::string> RunModels::follow(bool may_begin) {
     Made made = making_.get();
     if (!made.finer) {
       refine_to_ = is_by_itself_ ? 0 : refine_to_;
-      return "the model " + made.finer.error().message + "; nothing changed";
+      return Report("the model " + made.finer.error().message + "; nothing changed", true);
     }
     if (is_by_itself_) made_.source = made.source;
     if (is_by_itself_ && made.is_wanted) was_refined_ = made.source == flow::ModelSource::refined;
@@ -129,16 +129,16 @@ void RunModels::look() {
 }
 
 /// Chooses the part to edit. Returns a message for the user if there is none.
-std::optional<std::string> RunModels::choose_part() {
+std::optional<Report> RunModels::choose_part() {
   flow::DeformLoop& loop = *placed_.loop;
   const flow::Frame& frame = loop.frames().front();
   made_.part =
       frame.model == loop.changes().newest_model().number ? frame.parts.chosen : deform::no_index;
   if (made_.part != deform::no_index) return std::nullopt;
-  return commands::no_part;
+  return Report(commands::no_part, true);
 }
 
-std::optional<std::string> RunModels::begin() {
+std::optional<Report> RunModels::begin() {
   made_ = *std::exchange(asked_, {});
   is_by_itself_ = false;
   if (is_part_edit(made_) && made_.part == deform::no_index)
@@ -151,13 +151,13 @@ std::optional<std::string> RunModels::begin() {
 }
 
 /// Gives the new version to the loop, which holds still.
-std::optional<std::string> RunModels::hand_over() {
+std::optional<Report> RunModels::hand_over() {
   flow::DeformLoop& loop = *placed_.loop;
   std::optional<flow::PendingModel> finer = std::exchange(finer_, {});
   stage_ = Stage::handing_over;
   if (!finer->is_of(loop.changes().newest_model())) { // an undo came first
     loop.changes().keep_model();
-    if (is_part_edit(made_)) return "the model has changed; choose the part again";
+    if (is_part_edit(made_)) return Report("the model has changed; choose the part again", true);
     if (!is_by_itself_) asked_ = made_; // from the current model
     return std::nullopt;
   }
@@ -166,7 +166,7 @@ std::optional<std::string> RunModels::hand_over() {
   // Automatic changes happen many times per minute.
   const bool is_topology = made_.source == flow::ModelSource::topology;
   if (is_by_itself_ && (finer->found_nothing() || (taken && !is_topology))) return std::nullopt;
-  if (!taken) return taken.error().message + "; the model stays as it is";
+  if (!taken) return Report(taken.error().message + "; the model stays as it is", true);
   if (is_topology)
     return "thin places have parted, opened or fused; " + parts_text(loop.changes().newest_model());
   if (is_of_shape(made_.source)) return parts_text(loop.changes().newest_model());

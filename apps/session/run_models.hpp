@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "session/place_loop.hpp"
+#include "session/report.hpp"
 #include "session/sink.hpp"
 
 namespace nendo::session {
@@ -31,10 +32,10 @@ public:
   }
   /// Requests the stored settings and version that an undo or a redo awaits (flow::Frame::awaited).
   /// Returns a message for the user if that is impossible.
-  std::optional<std::string> go_to(const flow::Awaited& awaited);
+  std::optional<Report> go_to(const flow::Awaited& awaited);
   /// Continues the work without waiting for other threads; call it repeatedly. Pass `may_begin`
   /// false while the loop must not hold still. Returns a message for the user, if any.
-  std::optional<std::string> follow(bool may_begin);
+  std::optional<Report> follow(bool may_begin);
   /// Returns whether a request is pending.
   bool is_due() const noexcept { return asked_ || (!is_by_itself_ && (finer_ || making_.valid())); }
   /// Returns whether the loop holds still, or is about to get a model. No recording may begin or
@@ -50,10 +51,10 @@ private:
     flow::ModelSource source = flow::ModelSource::refined; ///< the kind of change
   };
 
-  std::optional<std::string> begin();
-  std::optional<std::string> choose_part();
+  std::optional<Report> begin();
+  std::optional<Report> choose_part();
   void look();
-  std::optional<std::string> hand_over();
+  std::optional<Report> hand_over();
   Result<void> prepare(const flow::ModelVersion& version);
 
   const PlacedLoop& placed_;

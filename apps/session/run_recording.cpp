@@ -152,7 +152,7 @@ void RunRecorder::set_file(bool on, const flow::Frame& frame) {
   placed_.loop->changes().change_log(next_log_.get(), frame.shape);
 }
 
-std::optional<std::string> RunRecorder::follow() {
+std::optional<Report> RunRecorder::follow() {
   if (!is_changing_) return std::nullopt;
   const auto state = placed_.loop->changes().take_state();
   if (!state) return std::nullopt;
@@ -171,11 +171,11 @@ std::optional<std::string> RunRecorder::follow() {
   outcomes_.pop_back();
   to_file_ = false;
   if (keeps_last_minute() && begin(setup, counts_))
-    return begun.error().message + "; the run continues, and is kept in memory only";
+    return Report(begun.error().message + "; the run continues, and is kept in memory only", true);
   next_log_.reset();
   is_changing_ = true;
   placed_.loop->changes().change_log(nullptr, state->shape);
-  return begun.error().message + "; the run continues without a recording";
+  return Report(begun.error().message + "; the run continues without a recording", true);
 }
 
 bool RunRecorder::keeps_last_minute() const noexcept {
@@ -192,7 +192,7 @@ void RunRecorder::save_last_minute() noexcept {
 
 void RunRecorder::end(const deform::Points& shape) {
   // A change that the loop made in its last tick ends one recording and begins another.
-  if (const auto message = follow()) cli::note(*message);
+  if (const auto message = follow()) cli::note(message->text);
   end_with(recording::sum_of(shape));
 }
 

@@ -12,6 +12,7 @@
 
 #include "cli/command.hpp"
 #include "gloves/open_hand.hpp"
+#include "session/report.hpp"
 
 namespace nendo::session {
 
@@ -68,7 +69,7 @@ public:
   void set_file(bool on, const flow::Frame& frame);
   /// Completes a change; call it repeatedly. Returns a message for the user if a recording could
   /// not begin; the run continues.
-  std::optional<std::string> follow();
+  std::optional<Report> follow();
   /// Ends the recording. To be called after the loop's last tick, with its final shape.
   void end(const deform::Points& shape);
 

@@ -65,24 +65,29 @@ bool RunSaving::is_modified(const flow::Frame& frame) {
   return false;
 }
 
-std::string RunSaving::save(flow::DeformLoop& loop) {
-  std::string report = std::exchange(shape_, false) ? save_shape(loop) : "";
-  if (std::exchange(recording_, false)) report += (report.empty() ? "" : "; ") + save_recording();
-  if (std::exchange(puppet_, false)) report += (report.empty() ? "" : "; ") + save_puppet(loop);
+Report RunSaving::save(flow::DeformLoop& loop) {
+  Report all("");
+  const auto add = [&all](const Report& one) {
+    all.text += (all.text.empty() ? "" : "; ") + one.text;
+    all.is_error = all.is_error || one.is_error;
+  };
+  if (std::exchange(shape_, false)) add(save_shape(loop));
+  if (std::exchange(recording_, false)) add(save_recording());
+  if (std::exchange(puppet_, false)) add(save_puppet(loop));
   next_ = HostClock::now() + min_between_saves;
-  return report;
+  return all;
 }
 
-std::string RunSaving::save_recording() {
-  if (!recorder_.keeps_last_minute()) return commands::nothing_kept;
+Report RunSaving::save_recording() {
+  if (!recorder_.keeps_last_minute()) return {commands::nothing_kept, true};
   recorder_.save_last_minute();
   return "what was just done is being kept";
 }
 
 /// Only the file that was opened, or that was saved before, is written over.
-std::string RunSaving::save_puppet(const flow::DeformLoop& loop) {
+Report RunSaving::save_puppet(const flow::DeformLoop& loop) {
   const auto& rig = loop.changes().puppet(loop.changes().newest_puppet());
-  if (!rig || out_puppet_.file.empty()) return "there is no puppet or mask to save";
+  if (!rig || out_puppet_.file.empty()) return {"there is no puppet or mask to save", true};
   std::error_code ignored;
   if (!out_puppet_.may_be_replaced && std::filesystem::exists(out_puppet_.file, ignored)) {
     int number = 1;
@@ -90,26 +95,26 @@ std::string RunSaving::save_puppet(const flow::DeformLoop& loop) {
   }
   puppet::Puppet puppet = rig->puppet();
   const auto name = cli::name_beside(model_, out_puppet_.file);
-  if (!name) return name.error().message;
+  if (!name) return name.error();
   if (puppet.model != *name) {
     puppet.model = *name;
     puppet.text = puppet::text_of(puppet);
   }
   puppet::count_from(-loop.changes().model(0)->mesh.offset, puppet);
   const auto written = replace_file(out_puppet_.file, puppet.text);
-  if (!written) return written.error().message;
+  if (!written) return written.error();
   out_puppet_.may_be_replaced = true;
   return (puppet.is_played() ? "the puppet is saved as " : "the mask is saved as ") +
          out_puppet_.file;
 }
 
-std::string RunSaving::save_shape(flow::DeformLoop& loop) {
+Report RunSaving::save_shape(flow::DeformLoop& loop) {
   const std::string file = chosen_.empty() ? cli::next_free_name(out_, saved_) : chosen_;
   const flow::Frame& frame = loop.frames().front();
   deform::Mesh shape = loop.changes().model(frame.model)->mesh;
   loop.changes().layout(frame.model).unpack(frame.shape, shape.vertices);
   const auto written = deform::write_mesh(file, shape, {}, up_);
-  if (!written) return written.error().message;
+  if (!written) return written.error();
   clean_ = Version{frame.model, frame.shape};
   saved_file_ = file;
   ++saves_;

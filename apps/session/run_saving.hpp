@@ -38,7 +38,7 @@ public:
   bool is_due_now() const noexcept { return is_due() && HostClock::now() >= next_; }
   /// Saves all pending files, the shape from the newest frame. Blocks while it writes. Returns a
   /// message for the user with the results.
-  std::string save(flow::DeformLoop& loop);
+  Report save(flow::DeformLoop& loop);
 
   /// Returns whether the frame's shape differs from the first one that this has seen, and from the
   /// saved one.
@@ -48,9 +48,9 @@ public:
   std::uint32_t saves() const noexcept { return saves_; } ///< the number of saved shapes
 
 private:
-  std::string save_shape(flow::DeformLoop& loop);
-  std::string save_recording();
-  std::string save_puppet(const flow::DeformLoop& loop);
+  Report save_shape(flow::DeformLoop& loop);
+  Report save_recording();
+  Report save_puppet(const flow::DeformLoop& loop);
 
   std::string out_;
   deform::UpAxis up_;

@@ -115,9 +115,9 @@ public:
       report(flow::in_words(pending_.now, status.frame.units_per_metre));
   }
   /// Writes to standard error, also without keys.
-  void report(const std::string& message) override {
+  void report(const Report& message) override {
     std::cerr << '\n'; // so that the line of progress is not overwritten
-    cli::note(message);
+    cli::note(message.text);
   }
 
 private:
@@ -142,7 +142,7 @@ public:
         models_(placed_, participants_.sinks, options_.refine_to, options_.changes_topology),
         saving_(options_, recorder_),
         commands_(options_, placed_, participants_.sinks, recorder_, models_, saving_,
-                  [this](const std::string& message) { report(message); }) {
+                  [this](const Report& message) { report(message); }) {
     for (const auto& hand : hands_)
       feedback_.push_back({hand.side, gloves::GloveFeedback(*hand.glove)});
     options_.loop.commands = &commands_.ring();
@@ -201,7 +201,7 @@ private:
     return milliseconds(paced ? 0 : 20);
   }
 
-  void report(const std::string& message) {
+  void report(const Report& message) {
     for (Observer* observer : observers_)
       observer->report(message);
   }
@@ -242,7 +242,7 @@ private:
     for (const auto& hand : hands_) {
       const std::size_t slot = flow::Placement::index_of(hand.side);
       for (const std::string& sentence : stuck_[slot].changes(frame.hands[slot].left_out))
-        report(hand.glove->info().source + ": " + sentence);
+        report({hand.glove->info().source + ": " + sentence, true});
     }
   }
   /// Reports wrists that a tracker loses and has again, and receivers in the wrong hemisphere.
@@ -253,7 +253,7 @@ private:
       const std::size_t slot = flow::Placement::index_of(hand.side);
       for (const std::string& sentence : wrists_[slot].changes(
                hand.side, frame.hands[slot], frame.scheduled, hand.wrist->station))
-        report(hand.wrist->station.source + ": " + sentence);
+        report({hand.wrist->station.source + ": " + sentence, true});
     }
   }
   void look_at_devices() {
@@ -263,7 +263,7 @@ private:
     const std::uint32_t model = placed_.loop->frames().front().model;
     if (std::exchange(shown_model_, model) == model) return;
     for (Sink* sink : participants_.sinks)
-      if (const auto settled = sink->settle(); !settled) report(settled.error().message);
+      if (const auto settled = sink->settle(); !settled) report(settled.error());
   }
 
   // Commands that came just before the end are still executed, if the loop ticks at all.

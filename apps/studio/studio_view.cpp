@@ -77,7 +77,7 @@ void StudioView::follow_recording(const RunStatus& status) {
 }
 
 /// A run reports each save, and each that failed, which keeps the user here.
-void StudioView::report(const std::string& message) {
+void StudioView::report(const session::Report& message) {
   if (saving_ == Saving::begun) saving_ = Saving::tried;
   parts_.shaping->report(message);
 }

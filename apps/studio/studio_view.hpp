@@ -26,7 +26,7 @@ public:
 
   void loop_begins(const session::LoopStart& start) override;
   void update(const session::RunStatus& status, session::Asks& asks) override;
-  void report(const std::string& message) override;
+  void report(const session::Report& message) override;
   bool sets_pace() const noexcept override { return true; }
   bool stays_open() const noexcept override { return true; }
   bool has_settled_shape() const noexcept override { return is_settled_; }

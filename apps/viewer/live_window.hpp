@@ -28,7 +28,8 @@ struct Gauges {
   std::shared_ptr<const deform::ModelParts>
       parts{}; ///< those of the frame's model; null: not in use
   commands::RunFacts facts{};
-  std::string report; ///< the result of the last command that saved something
+  std::string report; ///< the latest report of the run
+  bool report_is_error = false;
 };
 
 class PuppetEditor;

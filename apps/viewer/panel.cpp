@@ -267,7 +267,8 @@ void LiveWindow::Panel::draw(const flow::Frame& frame, const Gauges& gauges) {
       take(*row, now);
   }
   message = gesture.is_on() ? gesture.message() : note.empty() ? gauges.report : note;
-  draw_status_bar(frame, gauges, message);
+  const bool is_error = !note.empty() || gauges.report_is_error;
+  draw_status_bar(frame, gauges, message, is_error && !gesture.is_on());
   if (hints) draw_hints();
   if (const auto change = pending.ask()) commands.push_back(*change);
 }

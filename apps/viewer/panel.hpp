@@ -38,7 +38,7 @@ struct LiveWindow::Panel {
   bool fold_asked = false;
   bool folded = false;
   std::string note;    ///< replaces Gauges::report until the next command
-  std::string message; ///< in the status bar; empty: the loop's state
+  std::string message; ///< in the status bar; may be empty
 
   /// Returns the width that the panel covers at the window's left.
   int covered_px() const;

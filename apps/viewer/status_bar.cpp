@@ -1,7 +1,6 @@
 #include "viewer/status_bar.hpp"
 
 #include <cstdio>
-#include <utility>
 #include <vector>
 
 #include <imgui.h>
@@ -29,6 +28,18 @@ std::string state_of(const flow::HandFrame& hand, HostTime woke) {
 
 std::string counted(std::uint64_t number) {
   return thousands(static_cast<std::int64_t>(number));
+}
+
+float width_of(const std::string& text) {
+  return ImGui::CalcTextSize(text.c_str()).x;
+}
+
+/// Returns the text, without its middle if it is wider than that.
+std::string fitting(const std::string& text, float width) {
+  std::string shown = text;
+  for (std::size_t half = text.size() / 2; half > 0 && width_of(shown) > width; --half)
+    shown = text.substr(0, half) + "..." + text.substr(text.size() - half);
+  return shown;
 }
 
 struct Item {
@@ -65,7 +76,8 @@ float status_bar_height() {
   return em(1.8F);
 }
 
-void draw_status_bar(const flow::Frame& frame, const Gauges& gauges, const std::string& message) {
+void draw_status_bar(const flow::Frame& frame, const Gauges& gauges, const std::string& message,
+                     bool is_error) {
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   const float high = status_bar_height();
   ImGui::SetNextWindowPos(ImVec2(0.0F, all.y - high));
@@ -76,17 +88,27 @@ void draw_status_bar(const flow::Frame& frame, const Gauges& gauges, const std::
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
-  if (!message.empty()) {
-    ImGui::TextColored(warning(), "%s", message.c_str());
-    note_control("message", message);
-  } else if (frame.ticks_run > 0) {
-    bool is_first = true;
+  const float left = ImGui::GetCursorPosX(), right = all.x - left, gap = em(1.6F);
+  const std::string shown = fitting(message, right - left);
+  const float begin = right - width_of(shown);
+  float free_from = left;
+  if (frame.ticks_run > 0)
     for (const auto& [text, help] : items(frame, gauges)) {
-      if (!std::exchange(is_first, false)) ImGui::SameLine(0.0F, em(1.6F));
+      const float end = free_from + width_of(text);
+      if (end > (shown.empty() ? right : begin - gap)) break;
+      if (free_from > left) ImGui::SameLine(free_from);
       ImGui::TextUnformatted(text.c_str());
       note_control("status " + text, text);
       show_text(help);
+      free_from = end + gap;
     }
+  if (!shown.empty()) {
+    if (free_from > left) ImGui::SameLine();
+    ImGui::SetCursorPosX(begin);
+    ImGui::TextColored(is_error ? warning() : ImGui::GetStyle().Colors[ImGuiCol_Text], "%s",
+                       shown.c_str());
+    note_control("message", shown);
+    show_text(message);
   }
   ImGui::End();
   ImGui::PopStyleVar(2);

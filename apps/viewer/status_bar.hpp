@@ -1,6 +1,6 @@
 #pragma once
-// The line at the window's bottom: what the loop does, and how the gloves are. A message takes its
-// place, so that nothing moves under the pointer.
+// The line at the window's bottom: what the loop does, how the gloves are, and at the right a
+// message, so that nothing moves under the pointer.
 
 #include <string>
 
@@ -12,7 +12,9 @@ namespace nendo::viewer {
 std::string volume_text(const flow::Frame& frame, double volume);
 /// Returns the bar's height in pixels.
 float status_bar_height();
-/// Draws the bar. message: shown instead; empty: none.
-void draw_status_bar(const flow::Frame& frame, const Gauges& gauges, const std::string& message);
+/// Draws the bar. Figures without space beside the message are left out, the last ones first. An
+/// error has the colour of warnings.
+void draw_status_bar(const flow::Frame& frame, const Gauges& gauges, const std::string& message,
+                     bool is_error);
 
 } // namespace nendo::viewer

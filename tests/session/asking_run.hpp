@@ -73,7 +73,7 @@ public:
       asks.emplace_back(command);
     ++asked;
   }
-  void report(const std::string& message) override { reports.push_back(message); }
+  void report(const Report& message) override { reports.push_back(message.text); }
   bool is_content() const { return content_; }
 
   Changes changes;

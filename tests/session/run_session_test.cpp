@@ -49,7 +49,7 @@ public:
       asks.emplace_back(flow::EndRun{});
     }
   }
-  void report(const std::string& message) override { reports.push_back(message); }
+  void report(const Report& message) override { reports.push_back(message.text); }
   bool has_settled_shape() const noexcept override { return is_settled_; }
 
   std::vector<std::string> reports;
@@ -70,7 +70,7 @@ public:
     asks.emplace_back(flow::SaveShape{});
     asks.emplace_back(flow::EndRun{});
   }
-  void report(const std::string& message) override { reports.push_back(message); }
+  void report(const Report& message) override { reports.push_back(message.text); }
 
   std::vector<std::string> reports;
 
@@ -87,7 +87,7 @@ public:
     silent = status.frame.hands[0].silent;
     if (silent && !reports.empty() && ++frames_after > 50) asks.emplace_back(flow::EndRun{});
   }
-  void report(const std::string& message) override { reports.push_back(message); }
+  void report(const Report& message) override { reports.push_back(message.text); }
   bool stays_open() const noexcept override { return stays_; }
 
   std::vector<std::string> reports;
@@ -139,7 +139,7 @@ public:
     }
     if (step == 6) asks.emplace_back(flow::EndRun{});
   }
-  void report(const std::string& message) override { FAIL(message); }
+  void report(const Report& message) override { FAIL(message.text); }
 
 private:
   void make(const Result<puppet::Puppet>& puppet, Asks& asks) const {

@@ -23,7 +23,7 @@ struct Asker final : session::Observer {
     std::swap(asked, asks);
     asks.clear();
   }
-  void report(const std::string& message) override { reports.push_back(message); }
+  void report(const session::Report& message) override { reports.push_back(message.text); }
 
   session::Asks asks;
   std::vector<std::string> reports;

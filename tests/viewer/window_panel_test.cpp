@@ -265,6 +265,50 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
     CHECK(inside > 500);
   }
 
+  TEST_CASE("figures stay beside what the window says, and only errors have a warning's colour") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Person person;
+    const auto names = [&] {
+      std::vector<std::string> all;
+      for (const Control& control : controls())
+        if (control.name.starts_with("status ")) all.push_back(control.name);
+      return all;
+    };
+    const auto say = [&](const std::string& words, bool is_error = false) {
+      person.gauges.report = words;
+      person.gauges.report_is_error = is_error;
+      person.window->show(person.frame, true, person.gauges);
+    };
+    /// Pixels of the message that are redder than they are blue.
+    const auto red = [&] {
+      const Image shown = person.window->scene_window().screenshot();
+      const Control& message = *control_named("message");
+      int count = 0;
+      for (int y = static_cast<int>(message.min.y()); y < static_cast<int>(message.max.y()); ++y)
+        for (int x = static_cast<int>(message.min.x()); x < static_cast<int>(message.max.x()); ++x)
+          count += shown.at(x, y)[0] > shown.at(x, y)[2] + 60 ? 1 : 0;
+      return count;
+    };
+    say("");
+    const auto all = names();
+    REQUIRE(all.size() >= 3);
+    say("saved as head-1.obj");
+    CHECK(names() == all);
+    CHECK(red() == 0);
+    say("head-1.obj: no space", true);
+    CHECK(names() == all);
+    CHECK(red() > 20);
+    for (std::size_t length = 0; length < 400; length += 7) {
+      say("saved as /" + std::string(length, 'x') + "/head.obj");
+      test::check_controls();
+      const auto shown = names();
+      CHECK(std::equal(shown.begin(), shown.end(), all.begin()));
+      CHECK(control_named("message")->min.x() >= 0.0F);
+    }
+    CHECK(names().empty());
+  }
+
   TEST_CASE("no two controls overlap and no text is cut, in any mode, at any size and scale") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
