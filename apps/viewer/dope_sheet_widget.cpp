@@ -14,142 +14,73 @@
 namespace nendo::viewer {
 namespace {
 
-struct StripLook {
-  ImVec2 corner; ///< top left, in the window
-  ImVec2 size;
-  std::optional<StripKey> pointed_at;
-  std::optional<Retiming> shaded; ///< highlighted times
-};
-
 ImU32 of_style(ImGuiCol item) {
   return ImGui::GetColorU32(item);
 }
 
-/// The theme's.
-struct StripColours {
-  ImU32 ground = of_style(ImGuiCol_WindowBg), lane_ground = of_style(ImGuiCol_FrameBg);
-  ImU32 line = of_style(ImGuiCol_Border), words = of_style(ImGuiCol_Text);
-  ImU32 computed = of_style(ImGuiCol_PlotHistogram), not_computed = line;
-  ImU32 key_colour = computed, key_edge = of_style(ImGuiCol_PopupBg), pointed_colour = words;
-  ImU32 selected_colour = ImGui::GetColorU32(accent()), selected_edge = words;
-  ImU32 mark_colour = of_style(ImGuiCol_TextDisabled);
-  ImU32 head_colour = selected_colour, shade = ImGui::GetColorU32(accent(0.16F));
-};
-
 using Pictures = std::map<std::shared_ptr<const render::Image>, CardPicture>;
 
+/// Draws the strip, from a corner in the window. Measures in pixels of a screen of scale 1.
 class StripDrawing {
 public:
-  StripDrawing(const DopeSheet& strip, const TimelineView& view, const Pictures& pictures,
-               const StripLook& look)
-      : strip_(strip), view_(view), pictures_(pictures), look_(look),
-        list_(*ImGui::GetWindowDrawList()) {}
-
-  void draw() {
-    grounds();
-    rule();
-    pictures();
-    if (look_.shaded) shade_times(*look_.shaded);
-    for (std::size_t lane = 0; lane < view_.lanes.size(); ++lane)
-      keys_of(lane);
-    marks();
-    head();
-    numbers();
-  }
-
-private:
-  /// The strip measures in pixels of a screen of scale 1.
-  ImVec2 at(double x, double y) const {
-    return {look_.corner.x + scale_ * static_cast<float>(x),
-            look_.corner.y + scale_ * static_cast<float>(y)};
-  }
-  double length_of(const char* what) const {
-    return static_cast<double>(ImGui::CalcTextSize(what).x / scale_);
-  }
-  double x_of(double time_s) const { // a little beyond the strip where it is beyond
-    return std::clamp(strip_.x_of(time_s), DopeSheet::left - 20.0, width() + 20.0);
-  }
-  double width() const { return static_cast<double>(look_.size.x / scale_); }
-  double height() const { return static_cast<double>(look_.size.y / scale_); }
-  void text(double x, double y, ImU32 colour, const char* what) const {
-    list_.AddText(at(x, y), colour, what);
-  }
-  void upright(double x, double from, double to, ImU32 colour) const {
-    list_.AddLine(at(x, from), at(x, to), colour);
-  }
+  StripDrawing(const DopeSheet& strip, const TimelineView& view, ImVec2 corner, ImVec2 size)
+      : strip_(strip), view_(view), corner_(corner), width_(static_cast<double>(size.x / scale_)),
+        height_(static_cast<double>(size.y / scale_)), begin_(std::max(DopeSheet::left, x_of(0.0))),
+        end_(std::min(width_, x_of(view.duration_s))) {}
 
   void grounds() const {
-    list_.AddRectFilled(at(0.0, 0.0), at(width(), height()), colours_.ground);
-    const double begin = std::max(DopeSheet::left, x_of(0.0));
-    const double end = std::min(width(), x_of(view_.duration_s));
+    fill(0.0, 0.0, width_, height_, ground);
     for (std::size_t lane = 0; lane <= view_.lanes.size(); ++lane) {
       const double middle = DopeSheet::middle_of(lane);
-      constexpr double half = DopeSheet::lane / 2 - 1.0;
-      list_.AddRectFilled(at(begin, middle - half), at(end, middle + half), colours_.lane_ground);
-      const bool events = lane == view_.lanes.size();
-      text(6.0, middle - 7.0, colours_.words,
-           events ? "events" : std::string(name_of(view_.lanes[lane].side)).c_str());
+      fill(begin_, middle - half_lane, end_, middle + half_lane, lane_ground);
+      const bool is_events = lane == view_.lanes.size();
+      text(6.0, middle, words, is_events ? "events" : name_of(view_.lanes[lane].side));
     }
-    constexpr double top = DopeSheet::ruler - 5.0;
-    constexpr double bottom = DopeSheet::ruler - 1.0;
-    list_.AddRectFilled(at(begin, top), at(end, bottom), colours_.not_computed);
-    const double so_far = std::clamp(x_of(view_.computed_s), begin, end);
-    list_.AddRectFilled(at(begin, top), at(so_far, bottom), colours_.computed);
+    constexpr double top = DopeSheet::ruler - 5.0, bottom = DopeSheet::ruler - 1.0;
+    fill(begin_, top, end_, bottom, line);
+    fill(begin_, top, std::clamp(x_of(view_.computed_s), begin_, end_), bottom, strong);
+  }
+
+  /// Beside the play head where it is at a line.
+  void rule() const {
+    const double step_s = strip_.ruler_step_s();
+    const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step_s) + 1e-9)));
+    for (double number = std::ceil(strip_.first_s() / step_s); number * step_s <= strip_.last_s();
+         number += 1.0) {
+      const double x = strip_.x_of(number * step_s);
+      list_.AddLine(at(x, 4.0), at(x, height_), line);
+      char label[32];
+      std::snprintf(label, sizeof label, "%.*f", decimals, number * step_s);
+      text(std::min(x + 7.0, width_ - length_of(label) - 2.0), 10.0, words, label);
+    }
   }
 
   // As wide as its cell, which shows the middle of a wide picture.
-  void pictures() const {
+  void show(const Pictures& pictures) const {
     constexpr double top = DopeSheet::ruler, bottom = top + DopeSheet::pictures;
-    text(6.0, (top + bottom) / 2.0 - 7.0, colours_.words, "shape");
-    list_.PushClipRect(at(DopeSheet::left, top), at(width(), bottom), true);
+    text(6.0, (top + bottom) / 2.0, words, "shape");
+    list_.PushClipRect(at(DopeSheet::left, top), at(width_, bottom), true);
     for (const StripPicture& cell : view_.pictures) {
-      const double from = strip_.x_of(cell.from_s), to = strip_.x_of(cell.to_s);
-      const ImVec2 low = at(from + 0.5, top + 1.0), high = at(to - 0.5, bottom - 1.0);
-      const auto found = pictures_.find(cell.image);
-      if (found == pictures_.end()) {
-        list_.AddRectFilled(low, high, colours_.lane_ground);
+      const double from = strip_.x_of(cell.from_s) + 0.5, to = strip_.x_of(cell.to_s) - 0.5;
+      const auto found = pictures.find(cell.image);
+      if (found == pictures.end()) {
+        fill(from, top + 1.0, to, bottom - 1.0, lane_ground);
         continue;
       }
       const auto& [across, down] = cell.image->size();
-      const double shown = (to - from - 1.0) / (DopeSheet::pictures - 2.0) * down / across;
-      draw_picture(list_, found->second, low, high, static_cast<float>(shown));
+      const double shown = (to - from) / (DopeSheet::pictures - 2.0) * down / across;
+      draw_picture(list_, found->second, at(from, top + 1.0), at(to, bottom - 1.0),
+                   static_cast<float>(shown));
     }
     list_.PopClipRect();
   }
 
-  // A line at each; the numbers come later, over the play head.
-  template <class Visit>
-  void each_step(Visit&& visit) const {
-    const double step_s = strip_.ruler_step_s();
-    for (double number = std::ceil(strip_.first_s() / step_s); number * step_s <= strip_.last_s();
-         number += 1.0)
-      visit(number * step_s);
+  void shade(const Retiming& times) const {
+    const double from = std::max(DopeSheet::left, x_of(times.from_s));
+    fill(from, DopeSheet::ruler, std::max(from, x_of(times.to_s)), height_, shaded);
   }
 
-  void rule() const {
-    each_step(
-        [this](double time_s) { upright(strip_.x_of(time_s), 4.0, height(), colours_.line); });
-  }
-
-  void numbers() const {
-    const int decimals =
-        std::max(0, static_cast<int>(-std::floor(std::log10(strip_.ruler_step_s()) + 1e-9)));
-    each_step([&](double time_s) {
-      char label[32];
-      std::snprintf(label, sizeof label, "%.*f", decimals, time_s);
-      const double x = strip_.x_of(time_s) + 3.0;
-      const double long_px = length_of(label);
-      text(std::min(x, width() - long_px - 2.0), 3.0, colours_.words, label);
-    });
-  }
-
-  void shade_times(const Retiming& times) const {
-    const double begin = std::max(DopeSheet::left, x_of(times.from_s));
-    list_.AddRectFilled(at(begin, DopeSheet::ruler),
-                        at(std::max(begin, x_of(times.to_s)), height()), colours_.shade);
-  }
-
-  void keys_of(std::size_t lane) const {
+  void keys_of(std::size_t lane, const std::optional<StripKey>& pointed_at) const {
     const auto& keys_s = view_.lanes[lane].keys_s;
     const auto at_time = [&](double time_s) {
       return std::lower_bound(keys_s.begin(), keys_s.end(), time_s);
@@ -158,28 +89,13 @@ private:
     const double pixel_s = strip_.time_at(DopeSheet::left + 1.0) - strip_.first_s();
     for (auto key = at_time(strip_.first_s() - 8.0 * pixel_s);
          key != keys_s.end() && *key <= strip_.last_s() + 8.0 * pixel_s;) {
-      diamond(lane, static_cast<std::size_t>(key - keys_s.begin()), colours_.key_colour,
-              colours_.key_edge);
+      diamond(lane, static_cast<std::size_t>(key - keys_s.begin()), strong, edge);
       key = std::max(key + 1, at_time(*key + min_gap * pixel_s));
     }
-    for (const auto& [marked, colour, edge] :
-         {std::tuple{look_.pointed_at, colours_.pointed_colour, colours_.key_edge},
-          std::tuple{view_.selected, colours_.selected_colour, colours_.selected_edge}})
+    for (const auto& [marked, colour, rim] :
+         {std::tuple{pointed_at, words, edge}, {view_.selected, chosen, words}})
       if (marked && marked->lane == lane && marked->key < keys_s.size())
-        diamond(lane, marked->key, colour, edge);
-  }
-
-  void diamond(std::size_t lane, std::size_t key, ImU32 colour, ImU32 edge) const {
-    constexpr double half = 7.0;
-    const double x = strip_.x_of(view_.lanes[lane].keys_s[key]);
-    if (x < DopeSheet::left - half || x > width() + half) return;
-    const double y = DopeSheet::middle_of(lane);
-    const ImVec2 top = at(x, y - half);
-    const ImVec2 side = at(x + half, y);
-    const ImVec2 bottom = at(x, y + half);
-    const ImVec2 other = at(x - half, y);
-    list_.AddQuadFilled(top, side, bottom, other, colour);
-    list_.AddQuad(top, side, bottom, other, edge, 1.5F);
+        diamond(lane, marked->key, colour, rim);
   }
 
   // A name is written where it fits before the next.
@@ -188,32 +104,64 @@ private:
     double free_from = 0.0;
     for (std::size_t mark = 0; mark < view_.marks.size(); ++mark) {
       const double x = strip_.x_of(view_.marks[mark].time_s);
-      if (x < DopeSheet::left || x > width()) continue;
-      list_.AddRectFilled(at(x - 1.0, y - 10.0), at(x + 1.0, y + 10.0), colours_.mark_colour);
-      const char* const name = view_.marks[mark].name.c_str();
-      const double long_px = length_of(name);
-      const bool last = mark + 1 == view_.marks.size();
-      const double next = last ? width() : strip_.x_of(view_.marks[mark + 1].time_s);
-      if (x < free_from || x + 4.0 + long_px > std::min(next - 2.0, width())) continue;
-      text(x + 4.0, y - 7.0, colours_.mark_colour, name);
-      free_from = x + 4.0 + long_px;
+      if (x < DopeSheet::left || x > width_) continue;
+      fill(x - 1.0, y - 10.0, x + 1.0, y + 10.0, faint);
+      const std::string& name = view_.marks[mark].name;
+      const double end = x + 4.0 + length_of(name);
+      const bool is_last = mark + 1 == view_.marks.size();
+      const double next = is_last ? width_ : strip_.x_of(view_.marks[mark + 1].time_s);
+      if (x < free_from || end > std::min(next - 2.0, width_)) continue;
+      text(x + 4.0, y, faint, name);
+      free_from = end;
     }
   }
 
   void head() const {
     const double x = strip_.x_of(view_.head_s);
-    if (x < DopeSheet::left - 1.0 || x > width()) return;
-    list_.AddRectFilled(at(x - 1.0, 0.0), at(x + 1.0, height()), colours_.head_colour);
-    list_.AddTriangleFilled(at(x - 6.0, 0.0), at(x + 6.0, 0.0), at(x, 9.0), colours_.head_colour);
+    if (x < DopeSheet::left - 1.0 || x > width_) return;
+    fill(x - 1.0, 0.0, x + 1.0, height_, chosen);
+    list_.AddTriangleFilled(at(x - 6.0, 0.0), at(x + 6.0, 0.0), at(x, 9.0), chosen);
   }
 
+private:
+  ImVec2 at(double x, double y) const {
+    return {corner_.x + scale_ * static_cast<float>(x), corner_.y + scale_ * static_cast<float>(y)};
+  }
+  double x_of(double time_s) const { // a little beyond the strip where it is beyond
+    return std::clamp(strip_.x_of(time_s), DopeSheet::left - 20.0, width_ + 20.0);
+  }
+  double length_of(const std::string& what) const {
+    return static_cast<double>(ImGui::CalcTextSize(what.c_str()).x / scale_);
+  }
+  void fill(double x0, double y0, double x1, double y1, ImU32 colour) const {
+    list_.AddRectFilled(at(x0, y0), at(x1, y1), colour);
+  }
+  void text(double x, double middle, ImU32 colour, std::string_view what) const {
+    list_.AddText(at(x, middle - 7.0), colour, what.data(), what.data() + what.size());
+  }
+  void diamond(std::size_t lane, std::size_t key, ImU32 colour, ImU32 rim) const {
+    constexpr double half = 7.0;
+    const double x = strip_.x_of(view_.lanes[lane].keys_s[key]), y = DopeSheet::middle_of(lane);
+    if (x < DopeSheet::left - half || x > width_ + half) return;
+    const ImVec2 top = at(x, y - half), side = at(x + half, y);
+    const ImVec2 bottom = at(x, y + half), other = at(x - half, y);
+    list_.AddQuadFilled(top, side, bottom, other, colour);
+    list_.AddQuad(top, side, bottom, other, rim, 1.5F);
+  }
+
+  static constexpr double half_lane = DopeSheet::lane / 2 - 1.0;
+  const ImU32 ground = of_style(ImGuiCol_WindowBg), lane_ground = of_style(ImGuiCol_FrameBg);
+  const ImU32 line = of_style(ImGuiCol_Border), words = of_style(ImGuiCol_Text);
+  const ImU32 faint = of_style(ImGuiCol_TextDisabled), edge = of_style(ImGuiCol_PopupBg);
+  const ImU32 strong = of_style(ImGuiCol_PlotHistogram), chosen = ImGui::GetColorU32(accent());
+  const ImU32 shaded = ImGui::GetColorU32(accent(0.16F));
   const DopeSheet& strip_;
   const TimelineView& view_;
-  const Pictures& pictures_;
-  const StripLook& look_;
-  ImDrawList& list_;
+  ImDrawList& list_ = *ImGui::GetWindowDrawList();
   const float scale_ = scale();
-  const StripColours colours_;
+  const ImVec2 corner_;
+  const double width_, height_;
+  const double begin_, end_; ///< the timeline's, as far as it is visible
 };
 
 constexpr float controls_em = 2.4F;
@@ -266,13 +214,21 @@ void DopeSheetWidget::draw(const TimelineView& view, const std::optional<Retimin
   const auto x = static_cast<double>((mouse.x - corner.x) / px);
   const auto y = static_cast<double>((mouse.y - corner.y) / px);
   follow_mouse(view, x, y, actions);
-  StripLook look{corner, size, {}, shaded};
+  std::optional<StripKey> pointed_at;
   if (ImGui::IsItemHovered()) {
-    look.pointed_at = strip_.key_at(view.lanes, x, y);
+    pointed_at = strip_.key_at(view.lanes, x, y);
     if (!taken_) show_tooltip_at(view, strip_, x, y);
   }
   follow_pictures(view.pictures);
-  StripDrawing(strip_, view, pictures_, look).draw();
+  const StripDrawing drawing(strip_, view, corner, size);
+  drawing.grounds();
+  drawing.rule();
+  drawing.show(pictures_);
+  if (shaded) drawing.shade(*shaded);
+  for (std::size_t lane = 0; lane < view.lanes.size(); ++lane)
+    drawing.keys_of(lane, pointed_at);
+  drawing.marks();
+  drawing.head();
   actions.cells = strip_.cells();
   ImGui::End();
   ImGui::PopStyleVar(2);

@@ -16,11 +16,14 @@ void DopeSheet::fit(double width, double duration_s) noexcept {
   show(first_s_, all ? duration_s_ : last_s_);
 }
 
-// Within the timeline, and neither too close nor of no length.
+// Neither too close nor of no length.
+double DopeSheet::length_within(double length_s) const noexcept {
+  return std::clamp(length_s, closest, std::max(duration_s_, closest));
+}
+
 void DopeSheet::show(double first_s, double last_s) noexcept {
-  const double all_s = std::max(duration_s_, closest);
-  const double length_s = std::clamp(last_s - first_s, std::min(closest, all_s), all_s);
-  first_s_ = std::clamp(first_s, 0.0, all_s - length_s);
+  const double length_s = length_within(last_s - first_s);
+  first_s_ = std::clamp(first_s, 0.0, std::max(duration_s_, closest) - length_s);
   last_s_ = first_s_ + length_s;
 }
 
@@ -40,10 +43,9 @@ double DopeSheet::middle_of(std::size_t number) noexcept {
 void DopeSheet::zoom(double x, double steps) noexcept {
   const double part = std::clamp((x - left) / span_px(), 0.0, 1.0);
   const double at_s = first_s_ + part * (last_s_ - first_s_);
-  const double length_s = (last_s_ - first_s_) * std::pow(0.8, std::clamp(steps, -20.0, 20.0));
-  const double min_s = std::min(closest, std::max(duration_s_, closest));
-  const double kept_s = std::clamp(length_s, min_s, std::max(duration_s_, closest));
-  show(at_s - part * kept_s, at_s + (1.0 - part) * kept_s);
+  const double length_s =
+      length_within((last_s_ - first_s_) * std::pow(0.8, std::clamp(steps, -20.0, 20.0)));
+  show(at_s - part * length_s, at_s + (1.0 - part) * length_s);
 }
 
 void DopeSheet::pan(double dx) noexcept {
@@ -56,39 +58,38 @@ void DopeSheet::follow(double time_s) noexcept {
   show(time_s, time_s + (last_s_ - first_s_));
 }
 
-std::optional<StripKey> DopeSheet::key_at(std::span<const StripLane> lanes, double x,
-                                          double y) const {
-  constexpr double top = ruler + pictures;
-  if (y < top) return std::nullopt;
-  const auto number = static_cast<std::size_t>((y - top) / lane);
-  if (number >= lanes.size()) return std::nullopt;
-  const auto& keys_s = lanes[number].keys_s;
-  const double time_s = first_s_ + (x - left) / span_px() * (last_s_ - first_s_);
-  const auto after = std::lower_bound(keys_s.begin(), keys_s.end(), time_s);
-  std::optional<StripKey> found;
-  double nearest = reach;
-  for (auto key = after == keys_s.begin() ? after : after - 1; key != keys_s.end() && key <= after;
-       ++key) {
-    const double distance = std::abs(x_of(*key) - x);
+namespace {
+
+/// Returns the number of the nearest one within reach; `x_of` returns where one is.
+template <class Ones, class XOf>
+std::optional<std::size_t> nearest_of(const Ones& ones, double x, const XOf& x_of) {
+  std::optional<std::size_t> found;
+  double nearest = DopeSheet::reach;
+  for (std::size_t at = 0; at < ones.size(); ++at) {
+    const double distance = std::abs(x_of(ones[at]) - x);
     if (!(distance <= nearest)) continue;
     nearest = distance;
-    found = StripKey{number, static_cast<std::size_t>(key - keys_s.begin())};
+    found = at;
   }
   return found;
+}
+
+} // namespace
+
+std::optional<StripKey> DopeSheet::key_at(std::span<const StripLane> lanes, double x,
+                                          double y) const {
+  const double lane_at = (y - ruler - pictures) / lane;
+  if (!(lane_at >= 0.0 && lane_at < static_cast<double>(lanes.size()))) return std::nullopt;
+  const auto number = static_cast<std::size_t>(lane_at);
+  const auto key =
+      nearest_of(lanes[number].keys_s, x, [this](double time_s) { return x_of(time_s); });
+  return key ? std::optional(StripKey{number, *key}) : std::nullopt;
 }
 
 std::optional<std::size_t> DopeSheet::mark_at(std::span<const StripMark> marks, std::size_t lanes,
                                               double x, double y) const {
   if (std::abs(y - middle_of(lanes)) > lane / 2) return std::nullopt;
-  std::optional<std::size_t> found;
-  double nearest = reach;
-  for (std::size_t mark = 0; mark < marks.size(); ++mark) {
-    const double distance = std::abs(x_of(marks[mark].time_s) - x);
-    if (!(distance < nearest)) continue;
-    nearest = distance;
-    found = mark;
-  }
-  return found;
+  return nearest_of(marks, x, [this](const StripMark& mark) { return x_of(mark.time_s); });
 }
 
 std::vector<StripPicture> DopeSheet::cells() const {

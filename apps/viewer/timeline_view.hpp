@@ -93,6 +93,7 @@ public:
   double ruler_step_s() const noexcept;
 
 private:
+  double length_within(double length_s) const noexcept;
   void show(double first_s, double last_s) noexcept;
   double span_px() const noexcept;
 
