@@ -1,6 +1,7 @@
 #include "render/surface.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "render/exact_trig.hpp"
@@ -70,6 +71,27 @@ void add_cap(std::vector<Ring>& rings, const Vector3f& middle, const Vector3f& a
 }
 
 } // namespace
+
+Surface part_of(const Surface& whole, const Material& material,
+                const std::function<bool(std::span<const std::uint32_t, 3> corners)>& takes) {
+  constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+  Surface part{{}, {}, {}, material};
+  std::vector<std::uint32_t> place_in_part(whole.places.size(), unused);
+  for (std::size_t at = 0; at + 2 < whole.corners.size(); at += 3) {
+    const std::span<const std::uint32_t, 3> corners(&whole.corners[at], 3);
+    if (!takes(corners)) continue;
+    for (const std::uint32_t from : corners) {
+      std::uint32_t& place = place_in_part[from];
+      if (place == unused) {
+        place = static_cast<std::uint32_t>(part.places.size());
+        part.places.push_back(whole.places[from]);
+        part.normals.push_back(whole.normals[from]);
+      }
+      part.corners.push_back(place);
+    }
+  }
+  return part;
+}
 
 void add_capsule(Surface& surface, const Vector3f& from, const Vector3f& to, float from_radius,
                  float to_radius, int sides) {

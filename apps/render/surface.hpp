@@ -2,6 +2,7 @@
 // Surfaces of triangles and their materials.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -39,6 +40,11 @@ struct Surface {
 /// Computes the area-weighted normals of all places.
 void compute_normals(std::span<const Eigen::Vector3f> places,
                      std::span<const std::uint32_t> corners, std::vector<Eigen::Vector3f>& normals);
+
+/// Returns the triangles whose corners `takes` accepts, with only their places, in a material of
+/// their own.
+Surface part_of(const Surface& whole, const Material& material,
+                const std::function<bool(std::span<const std::uint32_t, 3> corners)>& takes);
 
 /// The following functions add to a surface. Radii must be positive.
 /// Adds a ball at both ends and a cone between them, as rings of `sides` corners.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
 #include <utility>
 
 #include "viewer/pointing.hpp"
@@ -38,31 +38,6 @@ std::optional<std::size_t> finger_of(Joint joint) noexcept {
   const std::size_t from_index = at - index_of(Joint::index_metacarpal);
   if (from_index % 5 == 0) return std::nullopt; // in the palm
   return 1 + from_index / 5;
-}
-
-/// Moves the triangles that belong to marked fingers to another surface.
-Surface split_off(Surface& whole, const std::vector<bool>& is_marked, const Material& material) {
-  constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
-  Surface part{{}, {}, {}, material};
-  std::vector<std::uint32_t> place_in_part(whole.places.size(), unused);
-  std::vector<std::uint32_t> rest;
-  for (std::size_t at = 0; at < whole.corners.size(); at += 3) {
-    if (!is_marked[whole.corners[at]]) {
-      rest.insert(rest.end(), &whole.corners[at], &whole.corners[at] + 3);
-      continue;
-    }
-    for (std::size_t corner = at; corner < at + 3; ++corner) {
-      const std::uint32_t from = whole.corners[corner];
-      if (place_in_part[from] == unused) {
-        place_in_part[from] = static_cast<std::uint32_t>(part.places.size());
-        part.places.push_back(whole.places[from]);
-        part.normals.push_back(whole.normals[from]);
-      }
-      part.corners.push_back(place_in_part[from]);
-    }
-  }
-  whole.corners = std::move(rest);
-  return part;
 }
 
 /// Returns where the joint of a sensor is.
@@ -192,16 +167,14 @@ Surface HandPainter::ghost(const hand::HandPose& pose) const {
 
 std::vector<Surface> HandPainter::live(const hand::HandPose& pose, const Fingers& marked,
                                        bool is_wrong) const {
-  std::vector<Surface> surfaces{{{}, {}, {}, live_skin}};
-  skin_.drape(pose, Vector3d::Zero(), surfaces[0]);
-  if (std::find(marked.begin(), marked.end(), true) == marked.end()) return surfaces;
-  std::vector<bool> is_marked(surfaces[0].places.size());
-  for (std::size_t at = 0; at < is_marked.size(); ++at) {
-    const auto finger = finger_of(skin_.influences(at)[0].joint);
-    is_marked[at] = finger && marked[*finger];
-  }
-  surfaces.push_back(split_off(surfaces[0], is_marked, is_wrong ? wrong_skin : right_skin));
-  return surfaces;
+  Surface whole{{}, {}, {}, live_skin};
+  skin_.drape(pose, Vector3d::Zero(), whole);
+  const auto is_marked = [&](std::span<const std::uint32_t, 3> corners) {
+    const auto finger = finger_of(skin_.influences(corners[0])[0].joint);
+    return finger && marked[*finger];
+  };
+  return {part_of(whole, live_skin, std::not_fn(is_marked)),
+          part_of(whole, is_wrong ? wrong_skin : right_skin, is_marked)};
 }
 
 std::vector<Surface> HandPainter::report(const hand::HandPose& pose,

@@ -31,7 +31,7 @@ double turned_deg(const Vector2d& pivot, const Vector2d& from, const Vector2d& t
   return to_degrees(std::atan2(a.y() * b.x() - a.x() * b.y(), a.dot(b))); // y points down
 }
 
-constexpr double above_m = 0.0015; // the surface, so that patches are seen
+constexpr float above_m = 0.0015F; // the surface, so that patches are seen
 constexpr double mark_px = 6.0;
 constexpr std::size_t max_named = 16; // points; of more, only those that a person points at
 constexpr double reach_px = 11.0;     // of the mouse, to a mark
@@ -105,16 +105,13 @@ const std::vector<render::Surface>& PuppetMarks::veils(const PuppetEditor& edito
 void PuppetMarks::make(const PuppetEditor& editor, const render::SceneBuilder& builder) {
   if (model_version_ != editor.model_version()) {
     model_version_ = editor.model_version();
-    const deform::Points& vertices = editor.seen().vertices;
-    corners_ = builder.corners();
-    places_.clear();
-    for (Index at = 0; at < vertices.cols(); ++at)
-      places_.push_back(
-          (vertices.col(at) / builder.units_per_metre() - builder.origin_m()).cast<float>());
-    std::vector<Vector3f> normals;
-    render::compute_normals(places_, corners_, normals);
-    for (std::size_t at = 0; at < places_.size(); ++at)
-      places_[at] += static_cast<float>(above_m) * normals[at];
+    render::SceneFrame seen;
+    seen.vertices = editor.seen().vertices;
+    render::Scene scene;
+    builder.build(seen, {.ground = false}, scene);
+    model_ = std::move(scene.model);
+    for (std::size_t at = 0; at < model_.places.size(); ++at)
+      model_.places[at] += above_m * model_.normals[at];
     graph_.reset();
   }
   veils_.clear();
@@ -122,25 +119,12 @@ void PuppetMarks::make(const PuppetEditor& editor, const render::SceneBuilder& b
   add_masks(editor);
 }
 
-/// Of the triangles whose corners it takes.
-template <class Takes>
-void PuppetMarks::add_veil(const render::Material& material, const Takes& takes) {
-  render::Surface veil{{}, {}, {}, material};
-  std::vector<std::uint32_t> numbers(places_.size(), 0xFFFFFFFF);
-  for (std::size_t at = 0; at + 2 < corners_.size(); at += 3) {
-    if (!takes(corners_[at]) || !takes(corners_[at + 1]) || !takes(corners_[at + 2])) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::uint32_t& number = numbers[corners_[at + k]];
-      if (number == 0xFFFFFFFF) {
-        number = static_cast<std::uint32_t>(veil.places.size());
-        veil.places.push_back(places_[corners_[at + k]]);
-      }
-      veil.corners.push_back(number);
-    }
-  }
-  if (veil.is_empty()) return;
-  render::compute_normals(veil.places, veil.corners, veil.normals);
-  veils_.push_back(std::move(veil));
+/// Of the triangles whose vertices it takes.
+void PuppetMarks::add_veil(const render::Material& material,
+                           const std::function<bool(std::uint32_t vertex)>& takes) {
+  veils_.push_back(part_of(model_, material, [&](std::span<const std::uint32_t, 3> corners) {
+    return std::all_of(corners.begin(), corners.end(), takes);
+  }));
 }
 
 void PuppetMarks::add_reach(const PuppetEditor& editor) {

@@ -3,6 +3,7 @@
 // and its masks, and handles the mouse.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -25,15 +26,14 @@ private:
   void make(const PuppetEditor& editor, const render::SceneBuilder& builder);
   void add_reach(const PuppetEditor& editor);
   void add_masks(const PuppetEditor& editor);
-  template <class Takes>
-  void add_veil(const render::Material& material, const Takes& takes);
+  void add_veil(const render::Material& material,
+                const std::function<bool(std::uint32_t vertex)>& takes);
 
   std::vector<render::Surface> veils_;
   std::uint64_t version_ = 0;
   std::uint64_t model_version_ = 0;
   std::optional<deform::SurfaceGraph> graph_;
-  std::vector<Eigen::Vector3f> places_; ///< the model's vertices, a little above the surface
-  std::vector<std::uint32_t> corners_;
+  render::Surface model_; ///< a little outside of the surface
 };
 
 /// How the window shows the model, in its units.

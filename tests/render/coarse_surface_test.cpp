@@ -1,5 +1,7 @@
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <utility>
@@ -93,6 +95,36 @@ TEST_SUITE("coarse surface") {
           std::max(farthest, (dense.places[corners[at]] - means.places[means.corners[at]]).norm());
     }
     CHECK(farthest < cube_m);
+  }
+
+  TEST_CASE("a part and the rest have each triangle once, where it was, and only its places") {
+    const Surface whole = bumpy(12, 24);
+    const auto is_high = [&](std::span<const std::uint32_t, 3> corners) {
+      return whole.places[corners[0]].y() > 0.1F;
+    };
+    const Material red{{1.0F, 0.0F, 0.0F}};
+    const Surface high = part_of(whole, red, is_high);
+    const Surface low = part_of(whole, {}, std::not_fn(is_high));
+    CHECK(high.material == red);
+    REQUIRE_FALSE(high.is_empty());
+    REQUIRE_FALSE(low.is_empty());
+    std::size_t of_high = 0, of_low = 0;
+    for (std::size_t at = 0; at < whole.corners.size(); at += 3) {
+      const bool goes_high = is_high(std::span<const std::uint32_t, 3>(&whole.corners[at], 3));
+      const Surface& part = goes_high ? high : low;
+      std::size_t& next = goes_high ? of_high : of_low;
+      for (std::size_t k = 0; k < 3; ++k, ++next) {
+        REQUIRE(next < part.corners.size());
+        CHECK(part.places[part.corners[next]] == whole.places[whole.corners[at + k]]);
+        CHECK(part.normals[part.corners[next]] == whole.normals[whole.corners[at + k]]);
+      }
+    }
+    CHECK(of_high == high.corners.size());
+    CHECK(of_low == low.corners.size());
+    std::vector<bool> is_used(high.places.size());
+    for (const std::uint32_t corner : high.corners)
+      is_used[corner] = true;
+    CHECK(std::count(is_used.begin(), is_used.end(), false) == 0);
   }
 
   TEST_CASE("places that are no numbers or far away are left out, and nothing else") {
