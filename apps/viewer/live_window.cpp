@@ -5,7 +5,6 @@
 #include <imgui.h>
 
 #include "viewer/panel.hpp"
-#include "viewer/puppet_tool.hpp"
 #include "viewer/status_bar.hpp"
 #include "viewer/widgets.hpp"
 
@@ -26,9 +25,7 @@ std::array<double, 5> reach_of(const flow::Frame& frame) {
 } // namespace
 
 LiveWindow::LiveWindow(std::shared_ptr<SceneWindow> window)
-    : window_(std::move(window)), editor_(std::make_unique<PuppetEditor>()),
-      tool_(std::make_unique<PuppetTool>()), marks_(std::make_unique<PuppetMarks>()),
-      panel_(std::make_unique<Panel>(*window_, *editor_)) {}
+    : window_(std::move(window)), panel_(std::make_unique<Panel>(*window_, editor_)) {}
 
 LiveWindow::~LiveWindow() = default;
 
@@ -60,8 +57,8 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
   window_->leave_left(panel_->covered_px());
   window_->leave_below(static_cast<int>(status_bar_height()));
   window_->begin_picture(scene_frame_, frame.ticks_run > 0); // before, no hand is there
-  if ((editor_->is_on() || editor_->has_masks()) && !editor_->is_dragging())
-    for (const render::Surface& veil : marks_->veils(*editor_, *builder_))
+  if ((editor_.is_on() || editor_.has_masks()) && !editor_.is_dragging())
+    for (const render::Surface& veil : marks_.veils(editor_, *builder_))
       window_->add(veil);
   if (!move_hand(frame) && !edit_puppet()) window_->move_camera();
   panel_->draw(frame, gauges);
@@ -99,7 +96,7 @@ const flow::LoopSettings& LiveWindow::settings() const noexcept {
 
 // That of the loop, or that of the editor.
 void LiveWindow::show_model(const flow::Frame& frame) {
-  if (const deform::BlockShape* const shape = editor_->is_on() ? editor_->shape() : nullptr) {
+  if (const deform::BlockShape* const shape = editor_.is_on() ? editor_.shape() : nullptr) {
     shows_loop_ = false;
     window_->follow(*shape);
   } else if (!std::exchange(shows_loop_, true)) {
@@ -108,10 +105,10 @@ void LiveWindow::show_model(const flow::Frame& frame) {
 }
 
 bool LiveWindow::edit_puppet() {
-  if (!editor_->is_on()) return false;
+  if (!editor_.is_on()) return false;
   const ModelPicture picture(*window_, builder_->units_per_metre());
-  const bool is_taken = tool_->follow(picture, *editor_);
-  draw_points(*editor_, picture, tool_->hovered());
+  const bool is_taken = tool_.follow(picture, editor_);
+  draw_points(editor_, picture, tool_.hovered());
   return is_taken;
 }
 

@@ -14,6 +14,7 @@
 #include "commands/commands.hpp"
 #include "viewer/picture_times.hpp"
 #include "viewer/pointing.hpp"
+#include "viewer/puppet_tool.hpp"
 #include "viewer/scene_window.hpp"
 
 namespace nendo::viewer {
@@ -31,10 +32,6 @@ struct Gauges {
   std::string report; ///< the latest report of the run
   bool report_is_error = false;
 };
-
-class PuppetEditor;
-class PuppetMarks;
-class PuppetTool;
 
 /// The user's commands since the last picture, in order.
 using Commands = std::vector<flow::Command>;
@@ -57,7 +54,7 @@ public:
   Commands show(const flow::Frame& frame, bool fresh, const Gauges& gauges);
 
   /// The editor of the puppet, after its own begin().
-  PuppetEditor& editor() noexcept { return *editor_; }
+  PuppetEditor& editor() noexcept { return editor_; }
 
   /// Shows hints over the picture until the user closes them.
   void show_hints() noexcept;
@@ -78,9 +75,9 @@ private:
   bool move_hand(const flow::Frame& frame);
 
   std::shared_ptr<SceneWindow> window_;
-  std::unique_ptr<PuppetEditor> editor_;
-  std::unique_ptr<PuppetTool> tool_;
-  std::unique_ptr<PuppetMarks> marks_;
+  PuppetEditor editor_;
+  PuppetTool tool_;
+  PuppetMarks marks_;
   std::unique_ptr<Panel> panel_;
   std::optional<render::SceneBuilder> builder_;
   bool shows_loop_ = true; ///< otherwise the editor's model

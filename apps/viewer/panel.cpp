@@ -81,22 +81,17 @@ void LiveWindow::Panel::buttons_of(commands::Buttons group, const commands::Situ
 }
 
 void LiveWindow::Panel::parts() {
-  render::SceneParts& shown = window.parts();
-  const std::array boxes{
-      std::pair{"hands", &shown.hands},      std::pair{"bones", &shown.bones},
-      std::pair{"vectors", &shown.vectors},  std::pair{"radii", &shown.radii},
-      std::pair{"contact", &shown.contacts}, std::pair{"facets", &window.facets()}};
   auto material = static_cast<std::size_t>(window.material());
   if (choice_field("material", gl::material_names, material))
     window.material() = static_cast<gl::Material>(material);
   show_help("next material");
   const float left = ImGui::GetCursorPosX();
   const float half = ImGui::GetContentRegionAvail().x / 2.0F;
-  for (std::size_t at = 0; at < boxes.size(); ++at) {
-    if (at % 2 != 0) ImGui::SameLine(left + half);
-    const auto& [name, value] = boxes[at];
-    check(name, *value);
-    show_help("show " + std::string(name));
+  std::size_t number = 0;
+  for (const auto& [command, is_shown] : window.switches()) {
+    if (number++ % 2 != 0) ImGui::SameLine(left + half);
+    check(command.substr(std::string_view("show ").size()), *is_shown);
+    show_help(command);
   }
 }
 

@@ -390,14 +390,18 @@ constexpr std::array views{
 
 } // namespace
 
+std::array<std::pair<std::string_view, bool*>, 6> SceneWindow::switches() noexcept {
+  return {{{"show hands", &parts_.hands},
+           {"show bones", &parts_.bones},
+           {"show vectors", &parts_.vectors},
+           {"show radii", &parts_.radii},
+           {"show contact", &parts_.contacts},
+           {"show facets", &style_.facets}}}; // flat instead of smooth shading
+}
+
 void SceneWindow::execute(std::string_view name) {
   if (name == "frame all") choose_camera(camera_.view);
-  for (const auto& [command, part] : {std::pair{"show hands", &parts_.hands},
-                                      {"show bones", &parts_.bones},
-                                      {"show vectors", &parts_.vectors},
-                                      {"show radii", &parts_.radii},
-                                      {"show contact", &parts_.contacts},
-                                      {"show facets", &style_.facets}})
+  for (const auto& [command, part] : switches())
     if (name == command) *part = !*part;
   for (const ViewChoice& choice : views)
     if (name == choice.name) camera_.view = choice.view;

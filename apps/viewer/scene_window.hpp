@@ -73,7 +73,8 @@ public:
   /// left and bottom, as in Blender.
   void follow_view_keys();
   render::SceneParts& parts() noexcept { return parts_; }
-  bool& facets() noexcept { return style_.facets; }             ///< flat instead of smooth shading
+  /// Returns the commands that show or hide something of the scene, and what they change.
+  std::array<std::pair<std::string_view, bool*>, 6> switches() noexcept;
   gl::Material& material() noexcept { return style_.material; } ///< the model's
   /// Sets the parts of the model that are in reach of the hands. They have an outline while radii
   /// are shown.
