@@ -29,6 +29,14 @@ struct Situation {
   const RunFacts& facts;
 };
 
+/// That of a run or of the timeline editor, which must outlive it.
+struct State {
+  State(const Situation& of_run) noexcept : run(&of_run) {}
+  State(const EditFacts& of_edit) noexcept : edit(&of_edit) {}
+  const Situation* run = nullptr;
+  const EditFacts* edit = nullptr;
+};
+
 // The places where a command is available, as bits.
 inline constexpr std::uint8_t in_terminal = 1, in_window = 2, on_page = 4, in_timeline = 8;
 inline constexpr std::uint8_t everywhere = in_terminal | in_window | on_page;
@@ -64,16 +72,14 @@ struct Row {
 
   /// Returns whether the run executes it, not the window or the page.
   constexpr bool is_for_run() const noexcept { return make != nullptr || choose != nullptr; }
-  bool is_on_in(const Situation& now) const { return is_on != nullptr && is_on(now); }
+  bool is_on_in(const State& now) const {
+    if (now.run != nullptr) return is_on != nullptr && is_on(*now.run);
+    return edit && edit->is_on != nullptr && edit->is_on(*now.edit);
+  }
   /// Returns null if the command is possible.
-  const char* refusal_in(const Situation& now) const {
-    return refusal != nullptr ? refusal(now) : nullptr;
-  }
-  bool is_on_in(const EditFacts& now) const {
-    return edit && edit->is_on != nullptr && edit->is_on(now);
-  }
-  const char* refusal_in(const EditFacts& now) const {
-    return edit && edit->refusal != nullptr ? edit->refusal(now) : nullptr;
+  const char* refusal_in(const State& now) const {
+    if (now.run != nullptr) return refusal != nullptr ? refusal(*now.run) : nullptr;
+    return edit && edit->refusal != nullptr ? edit->refusal(*now.edit) : nullptr;
   }
   constexpr bool has_key(std::string_view key) const noexcept {
     for (const std::string_view one : keys)

@@ -29,8 +29,8 @@ bool fits(const commands::Row& row, std::string_view text) {
   return true;
 }
 
-template <class Now>
-const commands::Row* CommandSearch::draw(std::uint8_t places, const Now& now, const char* mouse) {
+const commands::Row* CommandSearch::draw(std::uint8_t places, const commands::State& now,
+                                         const char* mouse) {
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(0.5F * all.x, 0.2F * all.y), ImGuiCond_Appearing,
                           ImVec2(0.5F, 0.0F));
@@ -72,9 +72,8 @@ const commands::Row* CommandSearch::draw(std::uint8_t places, const Now& now, co
   return taken;
 }
 
-template <class Now>
-std::vector<const commands::Row*> CommandSearch::asked(std::uint8_t places, const Now& now,
-                                                       const char* mouse) {
+std::vector<const commands::Row*>
+CommandSearch::asked(std::uint8_t places, const commands::State& now, const char* mouse) {
   std::vector<const commands::Row*> rows;
   if (takes_keys())
     for (const commands::Row& row : commands::table())
@@ -88,9 +87,4 @@ std::vector<const commands::Row*> CommandSearch::asked(std::uint8_t places, cons
     }
   return rows;
 }
-template std::vector<const commands::Row*>
-CommandSearch::asked(std::uint8_t, const commands::Situation&, const char*);
-template std::vector<const commands::Row*>
-CommandSearch::asked(std::uint8_t, const commands::EditFacts&, const char*);
-
 } // namespace nendo::viewer

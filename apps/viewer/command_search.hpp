@@ -15,14 +15,13 @@ namespace nendo::viewer {
 class CommandSearch {
 public:
   /// Handles keys, and draws the list, if it is open, with `mouse`, the mouse actions of the
-  /// window, below it. `now` is a commands::Situation or, for a timeline, commands::EditFacts.
-  /// Returns the rows of one of the places that were asked for since the last picture.
-  template <class Now>
-  std::vector<const commands::Row*> asked(std::uint8_t places, const Now& now, const char* mouse);
+  /// window, below it. Returns the rows of one of the places that were asked for since the last
+  /// picture.
+  std::vector<const commands::Row*> asked(std::uint8_t places, const commands::State& now,
+                                          const char* mouse);
 
 private:
-  template <class Now>
-  const commands::Row* draw(std::uint8_t places, const Now& now, const char* mouse);
+  const commands::Row* draw(std::uint8_t places, const commands::State& now, const char* mouse);
 
   std::array<char, 64> text_{};
   std::size_t chosen_ = 0; ///< an index of the shown rows

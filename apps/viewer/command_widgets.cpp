@@ -71,25 +71,20 @@ bool is_struck(const commands::Row& row) {
   });
 }
 
-template <class Now>
-bool row_button(const commands::Row& row, const Now& now, float width) {
+bool row_button(const commands::Row& row, const commands::State& now, float width) {
   const bool is_on = row.is_on_in(now) && !row.button_on.empty();
   const bool chosen =
       button(is_on ? row.button_on : row.button, width, row.refusal_in(now) == nullptr);
   show_help(row, now);
   return chosen;
 }
-template bool row_button(const commands::Row&, const commands::Situation&, float);
 
-template <class Now>
-void show_help(const commands::Row& row, const Now& now) {
+void show_help(const commands::Row& row, const commands::State& now) {
   const char* const refusal = row.refusal_in(now);
   std::string text(row.help);
   if (refusal != nullptr) text.append("\n").append(refusal);
   show_help(row.name, text);
 }
-template void show_help(const commands::Row&, const commands::Situation&);
-template void show_help(const commands::Row&, const commands::EditFacts&);
 
 void edit_buttons(commands::Buttons group, const commands::EditFacts& now, float width,
                   std::vector<commands::EditCommand>& asked) {

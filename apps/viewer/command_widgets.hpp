@@ -27,17 +27,14 @@ KeyStroke stroke_of(std::string_view name) noexcept;
 bool is_struck(const commands::Row& row);
 
 /// Draws the row's button, disabled if the command is not possible. Width 0: as wide as its text.
-/// `now` is a commands::Situation or, for a timeline, commands::EditFacts. Returns whether it was
-/// pressed.
-template <class Now>
-bool row_button(const commands::Row& row, const Now& now, float width);
+/// Returns whether it was pressed.
+bool row_button(const commands::Row& row, const commands::State& now, float width);
 /// Draws a group of timeline buttons in one line, those with two labels twice as wide, and appends
 /// pressed commands to `asked`.
 void edit_buttons(commands::Buttons group, const commands::EditFacts& now, float width,
                   std::vector<commands::EditCommand>& asked);
 /// Shows a tooltip with the row's help and keys, or its refusal, for the latest item.
-template <class Now>
-void show_help(const commands::Row& row, const Now& now);
+void show_help(const commands::Row& row, const commands::State& now);
 /// Shows a tooltip with `text`, or else the row's help, and the keys of the row of that name.
 void show_help(std::string_view name, std::string_view text = {});
 
