@@ -32,8 +32,7 @@ void StudioView::loop_begins(const session::LoopStart& start) {
 }
 
 Screen StudioView::screen() const noexcept {
-  const viewer::PuppetEditor& editor = parts_.shaping->window().editor();
-  return editor.is_on() && !editor.paints_masks() ? Screen::puppet : Screen::shaping;
+  return parts_.shaping->window().editor().edits_puppet() ? Screen::puppet : Screen::shaping;
 }
 
 void StudioView::update(const RunStatus& status, Asks& asks) {

@@ -188,7 +188,7 @@ void LiveWindow::Panel::sections(const flow::Frame& frame, const Gauges& gauges)
     if (section("Puppet", "What each finger moves, as points on the model.", true)) puppet(frame);
   };
   // While a puppet is edited, nothing is needed as much as this.
-  const bool edits = editor.is_on() && !editor.paints_masks();
+  const bool edits = editor.edits_puppet();
   if (edits) draw_puppet();
   SettingControls::draw_modes(pending.now);
   buttons_of(commands::Buttons::hands, now);

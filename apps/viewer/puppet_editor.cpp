@@ -88,7 +88,7 @@ void PuppetEditor::follow(const RigPointer& current, const flow::Frame& frame) {
     }
   }
   if (is_live()) follow_shape(frame);
-  if (!is_on() || paints_masks()) return;
+  if (!edits_puppet()) return;
   look_at_hands(frame);
   end_scaling(false);
 }
@@ -99,7 +99,7 @@ bool PuppetEditor::has_masks() const noexcept {
 }
 
 bool PuppetEditor::is_live() const noexcept {
-  return paints_masks() || (!is_on() && has_masks());
+  return edits_ == Edits::masks || (!is_on() && has_masks());
 }
 
 /// What is held does not move, so that a little later is soon enough; and the veils of a large
@@ -143,7 +143,7 @@ void PuppetEditor::turn(bool on) {
 }
 
 const deform::BlockShape* PuppetEditor::shape() {
-  if (paints_masks()) return nullptr;
+  if (edits_ == Edits::masks) return nullptr;
   if (!shapes_ && !rig_->puppet().points.empty()) {
     auto made = shapes_of(rig_);
     if (made) shapes_ = *std::move(made);

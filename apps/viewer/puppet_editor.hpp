@@ -34,6 +34,8 @@ public:
   RigPointer take() { return std::exchange(to_loop_, nullptr); }
 
   bool is_on() const noexcept { return edits_ != Edits::nothing; }
+  /// Returns whether it edits a puppet, and not only masks of fingertips.
+  bool edits_puppet() const noexcept { return is_on() && edits_ != Edits::masks; }
   void turn(bool on);
   /// Returns the shape to show: the rest shape, or, during a drag, the dragged function at 1. Null:
   /// the hands' shape, while masks of fingertips are painted.
@@ -91,8 +93,6 @@ public:
   bool brushes() const noexcept { return edits_ >= Edits::masks_of_puppet; }
   /// Begins or ends painting masks: of the puppet that is edited, or else of fingertips.
   void toggle_brush();
-  /// Returns whether the editor is on only for masks of fingertips.
-  bool paints_masks() const noexcept { return edits_ == Edits::masks; }
   /// Returns whether fingertips have masks. They are always drawn.
   bool has_masks() const noexcept;
   void paint(const SurfaceHit& hit, bool erases);

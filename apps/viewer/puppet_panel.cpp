@@ -94,14 +94,15 @@ void LiveWindow::Panel::masks(const commands::Situation& now) {
   ImGui::SameLine();
   const commands::Row& invert = *commands::named("mask invert");
   if (row_button(invert, now, share_of_line(1))) ask(invert, now);
-  if (editor.brushes()) ImGui::TextWrapped("%s", editor.message().c_str());
+  if (editor.brushes() && !editor.message().empty())
+    ImGui::TextWrapped("%s", editor.message().c_str());
 }
 
 void LiveWindow::Panel::puppet(const flow::Frame& frame) {
-  const bool is_on = editor.is_on() && !editor.paints_masks();
+  const bool is_on = editor.edits_puppet();
   if (button(is_on ? "Play the puppet" : "Edit the puppet", share_of_line(1))) editor.turn(!is_on);
   show_help("edit puppet", "Click, bend a finger, drag: what each finger does.");
-  if (!editor.is_on() || editor.paints_masks()) return;
+  if (!editor.edits_puppet()) return;
   if (!editor.message().empty()) ImGui::TextWrapped("%s", editor.message().c_str());
   puppet_buttons();
   const double radius = editor.brushes() ? editor.brush_radius() : editor.radius();

@@ -268,7 +268,8 @@ TEST_SUITE("puppet editor") {
     CHECK_FALSE(maker.editor.brushes());
     maker.editor.turn(false);
     maker.editor.toggle_brush(); // while the puppet plays, and not to edit it
-    CHECK(maker.editor.paints_masks());
+    CHECK(maker.editor.brushes());
+    CHECK_FALSE(maker.editor.edits_puppet());
     maker.editor.toggle_brush();
     CHECK_FALSE(maker.editor.is_on());
   }
