@@ -156,6 +156,7 @@ std::optional<std::string> FileDialog::draw() {
     is_open_ = true;
     ImGui::OpenPopup(title_.c_str());
   }
+  is_open_ = is_open_ && ImGui::IsPopupOpen(title_.c_str()); // a question may have replaced it
   if (!is_open_ || !viewer::begin_question(title_.c_str())) return std::nullopt;
   draw_places();
   auto taken = draw_list();

@@ -143,6 +143,16 @@ TEST_SUITE("bar" * doctest::skip(!test::restraint_is_counted)) {
       CHECK(seat.bar.take_answer() == answer);
       CHECK_FALSE(seat.bar.has_dialog());
     }
+    seat.key(GLFW_KEY_S, true, true);
+    REQUIRE(seat.bar.has_dialog());
+    seat.bar.ask("bust.obj"); // when the window is closed, in place of the dialog
+    seat.show();
+    seat.show();
+    seat.press("Stay");
+    seat.show();
+    CHECK_FALSE(seat.bar.has_dialog());
+    CHECK_FALSE(seat.bar.take_save());
+    seat.bar.take_answer();
     seat.bar.show_error("bust.obj: cannot be read");
     seat.show();
     seat.show();
