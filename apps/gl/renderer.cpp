@@ -45,6 +45,8 @@ Result<std::unique_ptr<Renderer>> Renderer::make() {
     if (!program) return program.error();
     renderer->programs_[static_cast<std::size_t>(kind)] = *program;
   }
+  for (std::size_t at = 1; at < material_names.size(); ++at)
+    renderer->matcaps_.push_back(std::make_unique<Picture>(matcap(static_cast<Material>(at))));
   glGenVertexArrays(1, &renderer->vertex_array_);
   glGenBuffers(3, renderer->stream_.data());
   return renderer;
@@ -82,7 +84,9 @@ void Renderer::use_material(const render::Material& material) {
       : next_.is_model && !model_.has_one_coat() ? Fragments::surface
                                                  : Fragments::plain);
   set(program_, "has_matcap", has_matcap ? 1 : 0);
-  if (has_matcap) matcaps_.use(style_.material);
+  if (has_matcap)
+    bind_texture(Unit::matcap, GL_TEXTURE_2D,
+                 matcaps_[static_cast<std::size_t>(style_.material) - 1]->texture());
   std::vector<Eigen::Vector4f> reaches = style_.reaches;
   reaches.resize(Style::max_reaches, Eigen::Vector4f(0.0F, 0.0F, 1e6F, 1.0F)); // far away
   set(program_, "reach_count", next_.is_model ? static_cast<int>(style_.reaches.size()) : 0);

@@ -13,9 +13,9 @@
 
 #include "gl/matcap.hpp"
 #include "gl/model.hpp"
+#include "gl/picture.hpp"
 #include "gl/shaders.hpp"
 #include "gl/shadow_map.hpp"
-#include "gl/textures.hpp"
 #include "render/camera.hpp"
 #include "render/image.hpp"
 #include "render/scene.hpp"
@@ -91,7 +91,7 @@ private:
   std::vector<std::uint32_t> outlined_; ///< corners of the outlined triangles
   unsigned vertex_array_ = 0;
   std::array<unsigned, 3> stream_{}; ///< positions, normals and corners of the other surfaces
-  MatCapTextures matcaps_;
+  std::vector<std::unique_ptr<const Picture>> matcaps_; ///< of the materials after lit
   ShadowMap fine_shadows_{2048}, coarse_shadows_{1024};
   ShadowMap* shadows_ = &fine_shadows_; ///< the map of the current picture
 };

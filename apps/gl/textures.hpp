@@ -1,12 +1,13 @@
 #pragma once
-// The textures of a model, and of MatCaps. All calls: the thread with the OpenGL context.
+// The textures of a model. All calls: the thread with the OpenGL context.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
-#include "gl/matcap.hpp"
+#include "gl/picture.hpp"
 #include "render/paint.hpp"
 
 namespace nendo::gl {
@@ -33,21 +34,8 @@ private:
 
   std::array<unsigned, 3> buffers_{};
   std::array<unsigned, 3> buffer_textures_{}; ///< 0: no such data per corner
-  std::vector<unsigned> pictures_;            ///< one per coat; 0: none
-};
-
-/// The pictures of all MatCaps.
-class MatCapTextures {
-public:
-  MatCapTextures();
-  ~MatCapTextures();
-  MatCapTextures(const MatCapTextures&) = delete;
-  MatCapTextures& operator=(const MatCapTextures&) = delete;
-  /// Selects the material's picture, which must be a MatCap, for drawing.
-  void use(Material material) const;
-
-private:
-  std::array<unsigned, material_names.size() - 1> names_{};
+  std::vector<std::shared_ptr<const Picture>>
+      pictures_; ///< one per coat, or null; coats may share one
 };
 
 } // namespace nendo::gl

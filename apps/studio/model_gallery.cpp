@@ -51,11 +51,11 @@ void ModelGallery::draw_all(std::stop_token over) {
   }
 }
 
-const viewer::CardPicture* ModelGallery::picture(std::size_t at) {
+const gl::Picture* ModelGallery::picture(std::size_t at) {
   Item& item = items_[at];
   const std::lock_guard lock(mutex_);
   if (const auto drawn = std::exchange(item.drawn, std::nullopt))
-    item.picture = std::make_unique<viewer::CardPicture>(*drawn);
+    item.picture = std::make_unique<gl::Picture>(*drawn);
   return item.picture.get();
 }
 

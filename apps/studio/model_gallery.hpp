@@ -8,8 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "gl/picture.hpp"
 #include "render/image.hpp"
-#include "viewer/card_picture.hpp"
 
 namespace nendo::studio {
 
@@ -26,7 +26,7 @@ public:
 
   /// Returns the picture of file `at`; null: it is not drawn yet, or the file cannot be read, or is
   /// too large to be read for a picture.
-  const viewer::CardPicture* picture(std::size_t at);
+  const gl::Picture* picture(std::size_t at);
   /// Returns whether all pictures are drawn.
   bool is_complete() const;
 
@@ -34,7 +34,7 @@ private:
   struct Item {
     std::string file;
     std::optional<render::Image> drawn; ///< until it is on the graphics card
-    std::unique_ptr<viewer::CardPicture> picture;
+    std::unique_ptr<gl::Picture> picture;
   };
   void draw_all(std::stop_token over);
 

@@ -14,6 +14,7 @@
 #include "session/kept_state.hpp"
 #include "viewer/command_widgets.hpp"
 #include "viewer/controls.hpp"
+#include "viewer/picture_card.hpp"
 #include "viewer/theme.hpp"
 
 namespace nendo::studio {
@@ -93,7 +94,7 @@ void StartScreen::load_pictures() {
   for (const ModeCard& card : modes) {
     const auto image = render::read_png(cli::shipped_model("").parent_path().parent_path() /
                                         "pictures" / card.picture);
-    modes_.push_back(image ? std::make_unique<viewer::CardPicture>(*image) : nullptr);
+    modes_.push_back(image ? std::make_unique<gl::Picture>(*image) : nullptr);
   }
 }
 

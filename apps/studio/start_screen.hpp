@@ -54,7 +54,7 @@ private:
 
   std::vector<Model> models_;
   ModelGallery gallery_;
-  std::vector<std::unique_ptr<viewer::CardPicture>> modes_; ///< their pictures; null: unreadable
+  std::vector<std::unique_ptr<gl::Picture>> modes_; ///< their pictures; null: unreadable
   GloveBoard board_;
   std::optional<GloveBoard> simulated_; ///< the hands shown without gloves; none: gloves are named
   std::size_t chosen_;                  ///< index of models_; as many: none is chosen

@@ -9,6 +9,7 @@
 
 #include "viewer/command_widgets.hpp"
 #include "viewer/controls.hpp"
+#include "viewer/picture_card.hpp"
 #include "viewer/theme.hpp"
 
 namespace nendo::viewer {
@@ -18,7 +19,7 @@ ImU32 of_style(ImGuiCol item) {
   return ImGui::GetColorU32(item);
 }
 
-using Pictures = std::map<std::shared_ptr<const render::Image>, CardPicture>;
+using Pictures = std::map<std::shared_ptr<const render::Image>, gl::Picture>;
 
 /// Draws the strip, from a corner in the window. Measures in pixels of a screen of scale 1.
 class StripDrawing {

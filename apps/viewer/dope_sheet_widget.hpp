@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "viewer/card_picture.hpp"
+#include "gl/picture.hpp"
 #include "viewer/timeline_view.hpp"
 
 namespace nendo::viewer {
@@ -31,7 +31,7 @@ private:
   void drag(const TimelineView& view, double x, EditActions& actions);
 
   /// On the graphics card, those that the strip shows now.
-  std::map<std::shared_ptr<const render::Image>, CardPicture> pictures_;
+  std::map<std::shared_ptr<const render::Image>, gl::Picture> pictures_;
   DopeSheet strip_;
   std::optional<Taken> taken_; ///< a key that the mouse holds
   bool scrubs_ = false;

@@ -1,17 +1,14 @@
-#include "viewer/card_picture.hpp"
+#include "viewer/picture_card.hpp"
 
 #include <string>
 #include <type_traits>
 
 #include "viewer/controls.hpp"
 #include "viewer/theme.hpp"
-#include <GL/gl.h>
 #include <imgui.h>
 
 namespace nendo::viewer {
 namespace {
-
-constexpr GLint clamp_to_edge = 0x812F; // newer than Windows' header, and so than GL/gl.h
 
 /// ImGui's name of a texture is a pointer, and since version 1.91.4 a number.
 template <class Id = ImTextureID>
@@ -24,31 +21,14 @@ Id imgui_texture(unsigned texture) {
 
 } // namespace
 
-CardPicture::CardPicture(const render::Image& image) {
-  glGenTextures(1, &texture_);
-  glBindTexture(GL_TEXTURE_2D, texture_);
-  for (const int filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-    glTexParameteri(GL_TEXTURE_2D, static_cast<GLenum>(filter), GL_LINEAR);
-  for (const int wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-    glTexParameteri(GL_TEXTURE_2D, static_cast<GLenum>(wrap), clamp_to_edge);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, image.size().width, image.size().height, 0, GL_RGB,
-               GL_UNSIGNED_BYTE, image.pixels().data());
-  glBindTexture(GL_TEXTURE_2D, 0);
-}
-
-CardPicture::~CardPicture() {
-  glDeleteTextures(1, &texture_);
-}
-
-void draw_picture(ImDrawList& list, const CardPicture& picture, const ImVec2& low,
+void draw_picture(ImDrawList& list, const gl::Picture& picture, const ImVec2& low,
                   const ImVec2& high, float part, float rounding) {
   const float beside = (1.0F - part) / 2.0F;
   list.AddImageRounded(imgui_texture(picture.texture()), low, high, {beside, 0.0F},
                        {1.0F - beside, 1.0F}, IM_COL32_WHITE, rounding);
 }
 
-bool picture_card(std::string_view name, const CardPicture* picture, float ratio, float width,
+bool picture_card(std::string_view name, const gl::Picture* picture, float ratio, float width,
                   bool is_chosen) {
   const std::string text(name);
   const float gap = em(0.35F), height = width / ratio;
