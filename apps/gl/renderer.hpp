@@ -91,7 +91,7 @@ private:
   std::vector<std::uint32_t> outlined_; ///< corners of the outlined triangles
   unsigned vertex_array_ = 0;
   std::array<unsigned, 3> stream_{}; ///< positions, normals and corners of the other surfaces
-  std::vector<std::unique_ptr<const Picture>> matcaps_; ///< of the materials after lit
+  std::vector<std::unique_ptr<const Picture>> matcaps_; ///< the pictures of materials after lit
   ShadowMap fine_shadows_{2048}, coarse_shadows_{1024};
   ShadowMap* shadows_ = &fine_shadows_; ///< the map of the current picture
 };

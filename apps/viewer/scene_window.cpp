@@ -7,12 +7,12 @@
 #include <thread>
 #include <utility>
 
-#include <GL/gl.h>
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include "gl/screen.hpp"
 #include "gl/smooth_target.hpp"
 #include "viewer/controls.hpp"
 #include "viewer/theme.hpp"
@@ -102,19 +102,6 @@ std::string glfw_error() {
   return words != nullptr ? words : "GLFW does not say why";
 }
 
-render::Image read_pixels(render::Size size) {
-  std::vector<render::Pixel> rows(static_cast<std::size_t>(size.width) *
-                                  static_cast<std::size_t>(size.height));
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadBuffer(GL_BACK);
-  glReadPixels(0, 0, size.width, size.height, GL_RGB, GL_UNSIGNED_BYTE, rows.data());
-  render::Image image(size);
-  for (int y = 0; y < size.height; ++y) // OpenGL begins at the bottom
-    for (int x = 0; x < size.width; ++x)
-      image.at(x, y) = rows[render::index_in_grid(x, size.height - 1 - y, size.width)];
-  return image;
-}
-
 render::Size pixels_of(GLFWwindow* window) {
   render::Size size;
   glfwGetFramebufferSize(window, &size.width, &size.height);
@@ -126,15 +113,6 @@ float scale_of(GLFWwindow* window) {
   float x = 1.0F, y = 1.0F;
   glfwGetWindowContentScale(window, &x, &y);
   return std::clamp(std::max(x, y), 0.5F, 4.0F);
-}
-
-// Mesa's renderers without a graphics card.
-bool draws_itself() {
-  const auto* text = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  const std::string renderer = text != nullptr ? text : "";
-  for (const char* name : {"llvmpipe", "softpipe", "Software Rasterizer"})
-    if (renderer.find(name) != std::string::npos) return true;
-  return false;
 }
 
 constexpr std::chrono::milliseconds min_period(8); // where no screen sets the pace
@@ -191,7 +169,7 @@ SceneWindow::open(const std::string& title, const WindowLook& look, const std::s
   if (!renderer) return without_window(renderer.error().message, instead);
   window->renderer_ = *std::move(renderer);
   window->target_ = std::make_unique<gl::SmoothTarget>();
-  window->draws_itself_ = draws_itself();
+  window->draws_itself_ = gl::draws_without_card();
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr; // leaves no file behind
   use_theme(look.theme, look.scale.value_or(scale_of(window->window_)));
@@ -455,7 +433,7 @@ void SceneWindow::draw_all(bool finest, double part) {
   const render::Size all = pixels_of(window_);
   const int below = std::clamp(below_, 0, all.height - 1);
   const render::Size size{all.width, all.height - below};
-  glClear(GL_COLOR_BUFFER_BIT);
+  gl::clear_screen();
   draw_scene(size, finest, part);
   target_->end(size, below);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
@@ -480,18 +458,18 @@ render::Camera SceneWindow::stage_camera() const noexcept {
 
 render::Image SceneWindow::screenshot() {
   draw_all(true); // again, for what was shown may be gone
-  return read_pixels(pixels_of(window_));
+  return gl::read_pixels(pixels_of(window_));
 }
 
 render::Image SceneWindow::moving_screenshot(double part) {
   shown_.size = {}; // as if it were the first one of its kind
   draw_all(false, part);
-  return read_pixels(pixels_of(window_));
+  return gl::read_pixels(pixels_of(window_));
 }
 
 render::Image SceneWindow::silhouette(render::Size size) {
   renderer_->draw_silhouette(scene_, camera_, size);
-  return read_pixels(size);
+  return gl::read_pixels(size);
 }
 
 } // namespace nendo::viewer
