@@ -35,7 +35,7 @@ std::optional<render::Image> picture_of(const std::string& file) {
 
 ModelGallery::ModelGallery(const std::vector<std::string>& files) {
   for (const std::string& file : files)
-    items_.push_back({file, std::nullopt, nullptr});
+    items_.push_back({file});
   thread_ = std::jthread([this](std::stop_token over) { draw_all(std::move(over)); });
 }
 
@@ -51,12 +51,9 @@ void ModelGallery::draw_all(std::stop_token over) {
   }
 }
 
-const gl::Picture* ModelGallery::picture(std::size_t at) {
-  Item& item = items_[at];
+const render::Image* ModelGallery::picture(std::size_t at) const {
   const std::lock_guard lock(mutex_);
-  if (const auto drawn = std::exchange(item.drawn, std::nullopt))
-    item.picture = std::make_unique<gl::Picture>(*drawn);
-  return item.picture.get();
+  return items_[at].drawn ? &*items_[at].drawn : nullptr;
 }
 
 bool ModelGallery::is_complete() const {

@@ -1,14 +1,12 @@
 #pragma once
-// Pictures of models, drawn in a thread of its own. Main thread otherwise, while a window is open.
+// Pictures of models, drawn in a thread of its own. Main thread otherwise.
 
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "gl/picture.hpp"
 #include "render/image.hpp"
 
 namespace nendo::studio {
@@ -26,15 +24,14 @@ public:
 
   /// Returns the picture of file `at`; null: it is not drawn yet, or the file cannot be read, or is
   /// too large to be read for a picture.
-  const gl::Picture* picture(std::size_t at);
+  const render::Image* picture(std::size_t at) const;
   /// Returns whether all pictures are drawn.
   bool is_complete() const;
 
 private:
   struct Item {
     std::string file;
-    std::optional<render::Image> drawn; ///< until it is on the graphics card
-    std::unique_ptr<gl::Picture> picture;
+    std::optional<render::Image> drawn{}; ///< stays, once it is there
   };
   void draw_all(std::stop_token over);
 

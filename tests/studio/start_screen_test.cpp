@@ -91,8 +91,8 @@ TEST_SUITE("start_screen" * doctest::skip(!test::restraint_is_counted)) {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
     Seat seat({"sim:wave?hand=left", "serial:/dev/there-is-no-such-port"});
-    CHECK(seat.comes("device simulated glove, 22 sensors, motion wave, left hand"));
-    CHECK(seat.comes("device serial:/dev/there-is-no-such-port"));
+    CHECK(seat.comes("simulated glove, 22 sensors, motion wave, left hand"));
+    CHECK(seat.comes("serial:/dev/there-is-no-such-port"));
     REQUIRE(seat.comes("Calibrate again..."));
     seat.press("Calibrate again...");
     REQUIRE(std::holds_alternative<Go>(seat.wish));
