@@ -37,7 +37,9 @@ struct RunArguments {
   session::OverdubArguments overdub;
   std::string decided_by_take; ///< the first option of the command line that a take decides
   std::vector<std::string> publish;
-  std::string web; ///< [ADDR:]PORT; empty: none
+  std::string web;                     ///< [ADDR:]PORT; empty: none
+  std::shared_ptr<web::Server> page{}; ///< the open server; null: `web` opens one
+  bool studio = false;                 ///< the user can choose a next run, in a window or on a page
   bool not_injective = false;
   std::optional<std::uint32_t> refine_to;
   std::string out_puppet;

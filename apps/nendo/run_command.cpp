@@ -18,7 +18,7 @@ namespace nendo::app::run_command {
 namespace {
 
 int run(RunArguments& options) {
-  if (options.view.window) return run_in_studio(options, {});
+  if (options.studio || options.view.window) return run_in_studio(options, {});
   const auto code = run_once(options);
   return code ? *code : cli::report(code.error());
 }
@@ -112,6 +112,7 @@ RunArguments& options_for(cli::Command& command,
                           const std::function<Begin(const cli::Command&)>& begin = {}) {
   return command.on_chosen<RunArguments>([command, begin](RunArguments& options) {
     options.decided_by_take = command.first_given(decided_by_take());
+    if (options.studio) options.view.window = options.web.empty();
     if (begin) options.begin = begin(command);
     return run(options);
   });
@@ -189,12 +190,12 @@ void nendo::app::add_view(cli::Command& program) {
 void nendo::app::add_studio(cli::Command& program) {
   using namespace run_command;
   cli::Command command = program.add_command(
-      "studio", "A window from glove to sculpture: gloves, models and modes to choose from, "
-                "calibration, shaping, and the timeline");
+      "studio", "A window, or with --web a page in a browser, from glove to sculpture: gloves, "
+                "models and modes to choose from, calibration, shaping, and the timeline");
   RunArguments& options = options_for(command, [](const cli::Command& given) {
     const bool is_chosen = !given.first_given({"--mesh", "--puppet", "--mode", "--over"}).empty();
     return is_chosen ? Begin::with_run : Begin::with_start;
   });
-  options.view.window = true;
+  options.studio = true;
   add_run_options(command, options);
 }

@@ -5,6 +5,7 @@
 
 #include "cli/cli.hpp"
 #include "nendo/run_once.hpp"
+#include "studio/page_studio.hpp"
 #include "studio/studio.hpp"
 
 namespace nendo::app::run_command {
@@ -80,10 +81,17 @@ private:
     if (studio_) return {};
     studio::StudioOptions options{first_.view, std::move(timeline_), named_gloves(first_.run),
                                   first_.run.calibration};
-    auto opened = studio::open_studio(options);
+    auto opened = first_.view.window ? studio::open_studio(options) : open_on_page(options);
     if (!opened) return opened.error();
     studio_ = *std::move(opened);
     return {};
+  }
+
+  Result<std::unique_ptr<studio::Studio>> open_on_page(const studio::StudioOptions& options) {
+    auto page = session::open_web_server(first_.web);
+    if (!page) return page.error();
+    page_ = *std::move(page);
+    return studio::open_page_studio(options, page_);
   }
 
   /// The window opens when the model is read, so that errors of the command line come first.
@@ -93,6 +101,7 @@ private:
         arguments.run.out.empty() && arguments.view.frames == 0 && arguments.run.duration_s <= 0.0;
     return run_once(arguments, [&](const RunArguments& complete) -> Result<session::Observer*> {
       if (const auto opened = open(); !opened) return opened.error();
+      arguments.page = page_;
       return studio_->observe(complete.run, asks_to_save);
     });
   }
@@ -104,6 +113,7 @@ private:
 
   const RunArguments& first_;
   std::optional<studio::FirstTimeline> timeline_;
+  std::shared_ptr<web::Server> page_; ///< null: the studio is a window
   std::unique_ptr<studio::Studio> studio_;
 };
 

@@ -136,10 +136,13 @@ Result<int> run_once(RunArguments& options, const OpenWindow& open_window) {
     participants.observers.push_back(*window);
   }
   std::unique_ptr<session::BrowserView> browser;
-  if (!options.web.empty()) {
-    auto opened = session::open_browser_view(options.web, wanted.mesh);
+  if (!options.page && !options.web.empty()) {
+    auto opened = session::open_web_server(options.web);
     if (!opened) return opened.error();
-    browser = *std::move(opened);
+    options.page = *std::move(opened);
+  }
+  if (options.page) {
+    browser = session::browser_view(options.page, wanted.mesh);
     participants.sinks.push_back(browser.get());
     participants.observers.insert(participants.observers.begin(), browser.get());
   }

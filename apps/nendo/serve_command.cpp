@@ -88,9 +88,9 @@ int serve_hands(Options& options) {
   const flow::RealtimeProcess process(run.realtime);
   std::unique_ptr<session::BrowserView> browser;
   if (!options.web.empty()) {
-    auto opened = session::open_browser_view(options.web, "");
+    auto opened = session::open_web_server(options.web);
     if (!opened) return cli::report(opened.error());
-    browser = *std::move(opened);
+    browser = session::browser_view(*std::move(opened), "");
   }
   const deform::Mesh no_model;
   EventCount event_count;

@@ -23,7 +23,7 @@ std::string device_lines(const gloves::DeviceStatuses& devices) {
 
 class WebView final : public BrowserView {
 public:
-  WebView(std::unique_ptr<web::Server> server, std::string model_name) noexcept
+  WebView(std::shared_ptr<web::Server> server, std::string model_name) noexcept
       : server_(std::move(server)), model_name_(std::move(model_name)) {}
 
   Result<void> begin(const LoopStart& start) override {
@@ -97,7 +97,7 @@ private:
     server_->add_weights(weights_, web::weights_message(*surface));
   }
 
-  std::unique_ptr<web::Server> server_;
+  std::shared_ptr<web::Server> server_;
   VersionTarget<web::FrameStream> streams_;
   flow::PendingSettings pending_;     ///< the settings of all clients
   std::uint64_t weights_ = 0;         ///< deform::SurfaceField::number() of the last weights
@@ -109,8 +109,7 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoint,
-                                                       const std::string& mesh) {
+Result<std::shared_ptr<web::Server>> open_web_server(const std::string& endpoint) {
   const auto where = parse_endpoint(endpoint, 0);
   if (!where) return Error{Errc::usage, "--web " + endpoint + ": " + where.error().message};
   auto server = web::Server::open(*where);
@@ -122,8 +121,12 @@ Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoi
     cli::note("on another machine, replace " + address +
               " by this machine's address; the connection is not encrypted, so everyone on the "
               "network can read it");
-  return std::unique_ptr<BrowserView>(
-      std::make_unique<WebView>(*std::move(server), cli::short_name(mesh)));
+  return std::shared_ptr<web::Server>(*std::move(server));
+}
+
+std::unique_ptr<BrowserView> browser_view(std::shared_ptr<web::Server> server,
+                                          const std::string& mesh) {
+  return std::make_unique<WebView>(std::move(server), cli::short_name(mesh));
 }
 
 } // namespace nendo::session

@@ -12,6 +12,9 @@ namespace nendo::viewer {
 class LiveWindow;
 class SceneWindow;
 } // namespace nendo::viewer
+namespace nendo::web {
+class Server;
+} // namespace nendo::web
 
 namespace nendo::session {
 
@@ -42,9 +45,11 @@ std::unique_ptr<WindowView> live_view(const ViewOptions& options, const RunOptio
 class BrowserView : public Sink, public Observer {};
 
 /// Opens the server for --web, and prints its address on standard error. Errors: those of
-/// parse_endpoint() and web::Server::open(). The view's begin() and prepare() return bad_input
-/// for a model with more vertices than browsers take.
-Result<std::unique_ptr<BrowserView>> open_browser_view(const std::string& endpoint,
-                                                       const std::string& mesh);
+/// parse_endpoint() and web::Server::open().
+Result<std::shared_ptr<web::Server>> open_web_server(const std::string& endpoint);
+/// Shows a run on the server's page. The view's begin() and prepare() return bad_input for a model
+/// with more vertices than browsers take.
+std::unique_ptr<BrowserView> browser_view(std::shared_ptr<web::Server> server,
+                                          const std::string& mesh);
 
 } // namespace nendo::session

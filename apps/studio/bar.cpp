@@ -1,6 +1,5 @@
 #include "studio/bar.hpp"
 
-#include <array>
 #include <filesystem>
 #include <string_view>
 
@@ -10,6 +9,7 @@
 #include <nendo/base/text.hpp>
 
 #include "session/kept_state.hpp"
+#include "studio/opened_files.hpp"
 #include "viewer/command_widgets.hpp"
 #include "viewer/controls.hpp"
 #include "viewer/theme.hpp"
@@ -24,19 +24,6 @@ namespace {
 constexpr float bar_em = 2.3F;
 constexpr const char* question_title = "Unsaved changes";
 
-struct Tab {
-  std::string_view name;
-  Screen screen;
-  const char* help;
-};
-constexpr std::array tabs{
-    Tab{"Start", Screen::start, "Gloves, models and modes."},
-    Tab{"Shaping", Screen::shaping, "Hands shape the model."},
-    Tab{"Puppet", Screen::puppet, "Edits what the fingers play."},
-    Tab{"Timeline", Screen::timeline, "Edits a recording by its key poses."},
-    Tab{"Calibration", Screen::calibration, "A glove learns your hand."},
-};
-
 bool item(const char* name, const char* keys, bool is_possible = true) {
   const bool taken = ImGui::MenuItem(name, keys, false, is_possible);
   viewer::note_control(name, name);
@@ -44,10 +31,6 @@ bool item(const char* name, const char* keys, bool is_possible = true) {
 }
 
 } // namespace
-
-std::vector<std::string> openable() {
-  return {".obj", ".ply", ".stl", ".gltf", ".glb", ".puppet.toml", ".timeline.toml", ".nendo"};
-}
 
 Bar::Bar(viewer::SceneWindow& window) : window_(window) {
   window.set_bar([this] { draw(); }, bar_em);

@@ -72,7 +72,4 @@ private:
   std::optional<Answer> answer_;
 };
 
-/// The endings of files that the studio opens.
-std::vector<std::string> openable();
-
 } // namespace nendo::studio

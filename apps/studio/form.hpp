@@ -1,5 +1,5 @@
 #pragma once
-// The controls of a screen. A screen describes them anew for each picture; the window draws them
+// The controls of a screen. A screen describes them for each picture again; the window draws them
 // (WindowForm), and a page in a browser gets them as a message (PageForm).
 
 #include <cstdint>

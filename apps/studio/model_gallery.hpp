@@ -31,7 +31,7 @@ public:
 private:
   struct Item {
     std::string file;
-    std::optional<render::Image> drawn{}; ///< stays, once it is there
+    std::optional<render::Image> drawn{}; ///< the picture
   };
   void draw_all(std::stop_token over);
 

@@ -37,10 +37,6 @@ std::string beside_recording(const std::string& recording) {
 
 } // namespace
 
-bool opens_in_timeline(const std::string& file) {
-  return file.ends_with(".nendo") || timeline::is_timeline(file);
-}
-
 void TimelineTab::open(const std::string& file) {
   opened_ = Opened{file, ""};
   if (file.empty()) return;

@@ -11,14 +11,12 @@
 
 #include "edit/window_editing.hpp"
 #include "studio/bar.hpp"
+#include "studio/opened_files.hpp"
 #include "studio/wish.hpp"
 #include "takes/timeline_frames.hpp"
 #include "timeline/edit.hpp"
 
 namespace nendo::studio {
-
-/// Returns whether a file of this name is a recording or a timeline.
-bool opens_in_timeline(const std::string& file);
 
 /// A timeline that was read already, and what is shown of it first.
 struct FirstTimeline {

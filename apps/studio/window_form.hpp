@@ -29,7 +29,7 @@ private:
   float next_width(std::string_view name);
 
   std::size_t in_line_ = 1, at_ = 0;
-  float width_ = 0.0F; ///< of the controls of this line
+  float width_ = 0.0F; ///< the width of the controls of this line
   std::map<const render::Image*, std::unique_ptr<gl::Picture>> pictures_;
 };
 

@@ -1,14 +1,30 @@
 #pragma once
 // What the user wants to do next in the studio's window.
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <variant>
 
 namespace nendo::studio {
 
 /// The screens, each a tab at the window's top.
 enum class Screen : std::uint8_t { start, shaping, puppet, timeline, calibration };
+
+/// A tab of the bar.
+struct Tab {
+  std::string_view name;
+  Screen screen;
+  std::string_view help;
+};
+inline constexpr std::array tabs{
+    Tab{"Start", Screen::start, "Gloves, models and modes."},
+    Tab{"Shaping", Screen::shaping, "Hands shape the model."},
+    Tab{"Puppet", Screen::puppet, "Edits what the fingers play."},
+    Tab{"Timeline", Screen::timeline, "Edits a recording by its key poses."},
+    Tab{"Calibration", Screen::calibration, "A glove learns your hand."},
+};
 
 /// The hands of a run that has no gloves named on the command line.
 enum class Hands : std::uint8_t {

@@ -1,5 +1,6 @@
 #include "web/client_commands.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -163,6 +164,19 @@ Result<ClientCommand> parse_command(std::string_view text) {
   const auto command = command_in(text);
   if (!command) return Error{Errc::bad_input, std::string(refusal_of(text))};
   return ClientCommand(*command);
+}
+
+Result<FormInput> parse_form_input(std::string_view text) {
+  std::string_view value = text;
+  const bool is_form = cut(value, '\t') == "form";
+  const std::string_view control = cut(value, '\t');
+  const auto is_control_character = [](char c) {
+    return static_cast<unsigned char>(c) < ' ' || c == '\x7F';
+  };
+  if (!is_form || control.empty() || std::ranges::any_of(control, is_control_character) ||
+      std::ranges::any_of(value, is_control_character))
+    return Error{Errc::bad_input, "form: write the id of a control and its value, after tabs"};
+  return FormInput{std::string(control), std::string(value)};
 }
 
 namespace {

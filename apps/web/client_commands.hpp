@@ -39,6 +39,15 @@ using ClientCommand = std::variant<flow::Command, const commands::Row*, NamedSet
 /// bad_input (not a command, or a number out of range), in at most max_close_reason bytes.
 Result<ClientCommand> parse_command(std::string_view text);
 
+/// What a user did to a control of the form (PROTOCOL.md, message 12).
+struct FormInput {
+  std::string control; ///< its id
+  std::string value;   ///< the new value; empty for buttons
+};
+/// Parses "form", an id and a value, separated by tabs. Error: bad_input, in at most
+/// max_close_reason bytes.
+Result<FormInput> parse_form_input(std::string_view text);
+
 /// Returns the page's rows as a JavaScript array of objects with name, keys, help, button,
 /// buttonOn, group, isForRun and isSetting.
 std::string page_commands();

@@ -15,6 +15,8 @@ namespace nendo::web {
 namespace {
 
 constexpr std::chrono::milliseconds linger_timeout(2000);
+constexpr std::chrono::minutes body_timeout(2);            ///< the time of a whole file
+constexpr std::size_t max_received = std::size_t{1} << 18; ///< bytes of a file in one turn
 
 } // namespace
 
@@ -33,10 +35,14 @@ short Connection::events() const noexcept {
 }
 
 bool Connection::receive(HostTime now) {
-  const std::size_t most = stage_ == Stage::socket ? ClientReader::max_pending : max_head_bytes;
+  const std::size_t most = stage_ == Stage::socket ? ClientReader::max_pending
+                           : stage_ == Stage::body
+                               ? std::min(body_bytes_, incoming_.size() + max_received)
+                               : max_head_bytes;
   std::array<char, 4096> buffer;
   for (;;) {
-    const bool keeps = stage_ == Stage::head || (stage_ == Stage::socket && !closing_);
+    const bool keeps =
+        stage_ == Stage::head || stage_ == Stage::body || (stage_ == Stage::socket && !closing_);
     const std::size_t space =
         keeps ? std::min(buffer.size(), most - std::min(most, incoming_.size())) : buffer.size();
     if (space == 0) return true; // the rest is read when this has been parsed
@@ -58,6 +64,14 @@ bool Connection::receive(HostTime now) {
     if (!keeps) return true; // discarded, one piece a turn
     incoming_.append(buffer.data(), static_cast<std::size_t>(got));
   }
+}
+
+void Connection::begin_body(std::size_t head_bytes, std::size_t body_bytes, HostTime now) {
+  incoming_.erase(0, head_bytes);
+  body_bytes_ = body_bytes;
+  const bool is_lost = peer_closed_ && incoming_.size() < body_bytes;
+  stage_ = is_lost ? Stage::ended : Stage::body;
+  stage_since_ = last_heard_ = now;
 }
 
 void Connection::await_more() noexcept {
@@ -162,6 +176,8 @@ bool Connection::within_message_rate(HostTime now) noexcept {
 
 bool Connection::is_expired(HostTime now) const noexcept {
   if (stage_ == Stage::head) return now - stage_since_ > limits_.request_timeout;
+  if (stage_ == Stage::body)
+    return now - last_heard_ > limits_.request_timeout || now - stage_since_ > body_timeout;
   if (stage_ == Stage::linger) return now - stage_since_ > linger_timeout;
   const bool stalls = !queue_.empty() && now - last_progress_ > limits_.stall_timeout;
   if (stage_ != Stage::socket) return stalls; // a large model may take long, while it moves

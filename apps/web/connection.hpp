@@ -33,6 +33,8 @@ enum Fact : std::size_t {
   wire_fact,
   commands_fact,
   devices_fact,
+  form_fact,
+  figures_fact,
   fact_count
 };
 using Facts = std::array<SharedBytes, fact_count>;
@@ -42,6 +44,7 @@ class Connection {
 public:
   enum class Stage {
     head,   ///< receives the HTTP request
+    body,   ///< receives the file that follows the request
     answer, ///< sends an HTTP answer, after which the connection ends
     socket, ///< a WebSocket
     linger, ///< everything is sent; discards input until the client closes
@@ -64,6 +67,11 @@ public:
   std::string& incoming() noexcept { return incoming_; }
   /// Waits for the rest of a request. Ends the connection if no more bytes can come.
   void await_more() noexcept;
+  /// Receives a file of so many bytes in incoming(), which then has only that.
+  void begin_body(std::size_t head_bytes, std::size_t body_bytes, HostTime now);
+  bool has_body() const noexcept {
+    return stage_ == Stage::body && incoming_.size() >= body_bytes_;
+  }
   /// Sends from the queue. Call it when poll() reports POLLOUT.
   void resume_sending(HostTime now);
 
@@ -87,6 +95,7 @@ public:
   /// Sends a ping if one is due.
   void keep_alive(HostTime now);
 
+  std::string file_name; ///< the name of the file that is received
   ClientReader reader;
   Feed feed;
   std::optional<FoxgloveFeed> foxglove; ///< set before upgrade()
@@ -107,6 +116,7 @@ private:
   Stage stage_ = Stage::head;
   HostTime stage_since_;
   std::string incoming_;
+  std::size_t body_bytes_ = 0;
   std::deque<Part> queue_;
   std::size_t sent_of_first_ = 0; ///< sent bytes of the queue's first part
   std::size_t queued_bytes_ = 0;  ///< queued bytes without shapes
@@ -116,7 +126,7 @@ private:
   bool closing_ = false;     ///< ends the connection when the queue is empty
   HostTime last_progress_;   ///< the last time a byte was sent, or the queue was empty
   HostTime queue_empty_;     ///< the last time the queue was empty
-  HostTime last_heard_;      ///< the last time a WebSocket received bytes
+  HostTime last_heard_;      ///< the last time the client sent, or took, bytes
   HostTime last_ping_;
   double messages_left_; ///< the tokens in the client's bucket
   HostTime last_message_;

@@ -90,10 +90,18 @@ int parse_headers(std::string_view rest, HttpRequest& request) {
   return 200;
 }
 
-// A request with a body is refused, so that no body is ever taken for a second request.
-bool has_body(const HttpRequest& request) noexcept {
-  if (request.count("Transfer-Encoding") > 0) return true;
-  return request.count("Content-Length") > 0 && request.header("Content-Length") != "0";
+// Only a POST may have a body, whose length is one number, so that no body is ever taken for a
+// second request.
+int parse_body(HttpHead& head) noexcept {
+  const HttpRequest& request = head.request;
+  if (request.count("Transfer-Encoding") > 0) return 413;
+  if (request.count("Content-Length") == 0) return 200;
+  const auto length = request.header("Content-Length");
+  const auto bytes = length ? number_in<std::size_t>(*length) : std::nullopt;
+  if (request.method != "POST") return bytes == 0 ? 200 : 413;
+  if (!bytes) return 400;
+  head.body_bytes = *bytes;
+  return head.body_bytes <= max_file_bytes ? 200 : 413;
 }
 
 Admission refuse(int status, std::string_view why) noexcept {
@@ -165,8 +173,32 @@ HttpHead parse_head(std::string_view bytes) {
   std::string_view rest = bytes.substr(0, end + 2);
   head.status = parse_first_line(take_line(rest), head.request);
   if (head.status == 200) head.status = parse_headers(rest, head.request);
-  if (head.status == 200 && has_body(head.request)) head.status = 413;
+  if (head.status == 200) head.status = parse_body(head);
   return head;
+}
+
+std::optional<std::string> file_name_in(std::string_view text) {
+  constexpr std::size_t max_bytes = 100;
+  const auto digit = [](char c) {
+    constexpr std::string_view digits = "0123456789abcdef";
+    return digits.find(to_lower(c));
+  };
+  std::string name;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    char letter = text[at];
+    if (letter == '%') {
+      if (at + 2 >= text.size()) return std::nullopt;
+      const std::size_t high = digit(text[at + 1]), low = digit(text[at + 2]);
+      if (high > 15 || low > 15) return std::nullopt;
+      letter = static_cast<char>(16 * high + low);
+      at += 2;
+    }
+    if (static_cast<unsigned char>(letter) < ' ' || letter == '\x7F' || letter == '/')
+      return std::nullopt;
+    name += letter;
+  }
+  if (name.empty() || name.size() > max_bytes || name.front() == '.') return std::nullopt;
+  return name;
 }
 
 bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept {
@@ -188,7 +220,8 @@ bool is_address_or_localhost(std::string_view authority) {
 }
 
 Admission admit(const HttpRequest& request, std::string_view token) noexcept {
-  if (request.method != "GET") return refuse(405, "GET is all that there is");
+  if (request.method != (request.path == "/open" ? "POST" : "GET"))
+    return refuse(405, "GET is all that there is, but for POST /open");
   const auto host = request.header("Host");
   if (!host) return refuse(400, "one Host is needed");
   if (!is_address_or_localhost(*host))
@@ -198,12 +231,13 @@ Admission admit(const HttpRequest& request, std::string_view token) noexcept {
   if (!is_foxglove && request.count("Origin") > 0 && !(origin && is_same_origin(*origin, *host)))
     return refuse(403, "this is no other page's to use");
   if (request.path == "/") return {200, Resource::page, {}};
-  constexpr std::array<std::pair<std::string_view, Resource>, 5> resources{
+  constexpr std::array<std::pair<std::string_view, Resource>, 6> resources{
       {{"/model", Resource::model},
        {"/picture", Resource::picture},
        {"/skin", Resource::skin},
        {"/ws", Resource::socket},
-       {"/foxglove", Resource::foxglove}}};
+       {"/foxglove", Resource::foxglove},
+       {"/open", Resource::file}}};
   const auto* const found =
       std::find_if(resources.begin(), resources.end(),
                    [&](const auto& resource) { return resource.first == request.path; });

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -14,6 +15,8 @@ namespace nendo::web {
 inline constexpr std::size_t max_head_bytes =
     16384; ///< includes the cookies of a host's other ports
 inline constexpr std::size_t max_headers = 64;
+inline constexpr std::size_t max_file_bytes = std::size_t{128}
+                                              << 20; ///< the longest file of POST /open
 
 struct HttpRequest {
   std::string_view method;
@@ -36,12 +39,13 @@ struct HttpHead {
   int status = 0;
   std::size_t bytes = 0; ///< length of a complete head
   HttpRequest request{};
+  std::size_t body_bytes = 0; ///< the length of a POST, at most max_file_bytes
 };
 
 /// Parses the head of a request. `bytes` must be all bytes that the client has sent so far.
 HttpHead parse_head(std::string_view bytes);
 
-enum class Resource { page, model, picture, skin, socket, foxglove };
+enum class Resource { page, model, picture, skin, socket, foxglove, file };
 
 struct Admission {
   int status = 200; ///< 200 if granted, otherwise the status of the refusal
@@ -50,12 +54,17 @@ struct Admission {
   std::string_view protocol{}; ///< the chosen subprotocol of Resource::foxglove
 };
 
-/// Grants or refuses a request. Host must be a numeric address or localhost, against DNS rebinding.
-/// Origin, if given, must be the same host; but for Foxglove it may be any, because its application
-/// is a page of another site, and the token is secret. All resources except the page need
+/// Grants or refuses a request: a GET, or the POST of a file. Host must be a numeric address or
+/// localhost, against DNS rebinding. Origin, if given, must be the same host; but for Foxglove it
+/// may be any, because its application is a page of another site, and the token is secret. All
+/// resources except the page need
 /// `?token=`. A WebSocket request must conform to RFC 6455, section 4.2.1, and one for Foxglove
 /// must offer one of foxglove_protocols.
 Admission admit(const HttpRequest& request, std::string_view token) noexcept;
+
+/// Returns the name of a file to open, from its percent-encoded form: 1 to 100 bytes without a
+/// path, a control character or a "." at the beginning; nothing if it is none.
+std::optional<std::string> file_name_in(std::string_view text);
 
 /// Returns whether the host of an authority ("localhost:8080", "[::1]", "192.168.1.5") is a numeric
 /// address or localhost. A hostile site can resolve its own name to this machine (DNS rebinding),

@@ -75,6 +75,13 @@ void Server::present(std::shared_ptr<FrameStream> stream, std::vector<std::byte>
   work_->wake();
 }
 
+void Server::present_nothing() {
+  const deform::Mesh nothing;
+  const deform::BlockLayout layout(nothing.vertices);
+  present(std::make_shared<FrameStream>(layout, flow::FrameCapacity{}),
+          model_message(layout, nothing, {}, {}));
+}
+
 // What the loop was last requested to use may be refused, so that it continues with older ones.
 void Server::add_weights(std::uint64_t number, std::vector<std::byte> message) {
   constexpr std::size_t max_weights = 3;
@@ -121,6 +128,33 @@ void Server::set_fact(std::size_t fact, std::vector<std::byte> message) {
 
 void Server::set_settings(const flow::LoopSettings& settings) {
   set_fact(settings_fact, text_message(MessageType::settings, commands::text_of(settings)));
+}
+
+void Server::set_form(std::string_view json) {
+  set_fact(form_fact, text_message(MessageType::form, json));
+}
+
+void Server::set_figures(std::string_view json) {
+  set_fact(figures_fact, text_message(MessageType::figures, json));
+}
+
+void Server::set_pictures(Pictures pictures) {
+  const std::scoped_lock lock(work_->inbox.mutex);
+  work_->inbox.pictures = std::move(pictures);
+}
+
+std::optional<FormInput> Server::next_input() {
+  const std::scoped_lock lock(work_->inbox.mutex);
+  auto& inputs = work_->inbox.inputs;
+  if (inputs.empty()) return std::nullopt;
+  std::optional<FormInput> input(std::move(inputs.front()));
+  inputs.pop_front();
+  return input;
+}
+
+std::optional<Server::File> Server::take_file() {
+  const std::scoped_lock lock(work_->inbox.mutex);
+  return std::exchange(work_->inbox.file, std::nullopt);
 }
 
 void Server::set_commands(const commands::Situation& now) {
@@ -250,6 +284,8 @@ void Server::Work::take_presented() {
   {
     const std::scoped_lock lock(inbox.mutex);
     next = std::exchange(inbox.next, std::nullopt);
+    if (auto pictures = std::exchange(inbox.pictures, std::nullopt))
+      (next ? *next : presented_).pictures = *std::move(pictures);
   }
   if (!next) return;
   if (presented_.stream) {

@@ -103,9 +103,28 @@ public:
   void follow(const flow::Frame& frame, const puppet::Rig* rig);
   /// Sets the text of the devices message (PROTOCOL.md).
   void set_devices(std::string_view lines);
+  /// Sets the controls that clients show (PROTOCOL.md, message 12). From then on the server takes
+  /// their input, and files to open.
+  void set_form(std::string_view json);
+  /// Sets the hands that clients show without a run (PROTOCOL.md, message 13).
+  void set_figures(std::string_view json);
+  /// Replaces the pictures of the loop that is served.
+  void set_pictures(Pictures pictures);
+  /// Returns the next input of the form, of all clients in order of arrival.
+  std::optional<FormInput> next_input();
+  /// A file that a client wants to open.
+  struct File {
+    std::string name; ///< without a path
+    std::string bytes;
+  };
+  /// Returns the file that has arrived since the last call.
+  std::optional<File> take_file();
   /// Returns the counters. Each number is atomic; together they are not a consistent snapshot.
   /// Wait-free.
   ServerCounters counters() const noexcept;
+
+  /// Serves an empty model without frames, for a form and figures.
+  void present_nothing();
 
 private:
   class Work;

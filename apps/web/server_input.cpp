@@ -93,6 +93,7 @@ void Server::Work::serve(Connection& connection, short events, HostTime now) {
   if ((events & POLLOUT) != 0) connection.resume_sending(now);
   if ((events & (POLLIN | POLLHUP | POLLERR)) == 0 || !connection.receive(now)) return;
   if (connection.stage() == Connection::Stage::head) read_head(connection, now);
+  if (connection.has_body()) take_file(connection, now);
   if (connection.stage() == Connection::Stage::socket) read_socket(connection, now);
 }
 
@@ -121,6 +122,8 @@ void Server::Work::read_head(Connection& connection, HostTime now) {
   } else if (admission.resource == Resource::skin) {
     static const SharedBytes skin = std::make_shared<const std::vector<std::byte>>(skin_message());
     connection.answer(answer_head(200, binary_type, skin->size()) + "\r\n", skin, now);
+  } else if (admission.resource == Resource::file) {
+    begin_file(connection, head, now);
   } else if (!presented_.model) {
     refuse(connection, 503, "the loop has not begun; try again in a second", now);
   } else if (admission.resource == Resource::model) {
@@ -132,6 +135,34 @@ void Server::Work::read_head(Connection& connection, HostTime now) {
     open_socket(connection, head.request, admission, now);
     connection.incoming().erase(0, head.bytes);
   }
+}
+
+// One at a time, so that clients with the token fill no memory.
+void Server::Work::begin_file(Connection& connection, const HttpHead& head, HostTime now) {
+  const auto name = file_name_in(head.request.parameter("name").value_or(""));
+  if (!name) return refuse(connection, 400, "that is no name of a file", now);
+  bool is_busy = std::ranges::any_of(connections_, [](const Connection& other) {
+    return other.stage() == Connection::Stage::body;
+  });
+  bool opens = false;
+  {
+    const std::scoped_lock lock(inbox.mutex);
+    opens = inbox.facts[form_fact] != nullptr;
+    is_busy = is_busy || inbox.file;
+  }
+  if (!opens) return refuse(connection, 404, "this run opens no files; nendo studio does", now);
+  if (is_busy) return refuse(connection, 503, "another file is coming; try again", now);
+  connection.file_name = *name;
+  connection.begin_body(head.bytes, head.body_bytes, now);
+}
+
+void Server::Work::take_file(Connection& connection, HostTime now) {
+  {
+    const std::scoped_lock lock(inbox.mutex);
+    inbox.file = File{std::move(connection.file_name), std::move(connection.incoming())};
+  }
+  connection.incoming().clear();
+  connection.answer(answer_head(200, "text/plain; charset=utf-8", 0) + "\r\n", nullptr, now);
 }
 
 void Server::Work::send_picture(Connection& connection, const HttpRequest& request, HostTime now) {
@@ -178,6 +209,14 @@ void Server::Work::read_socket(Connection& connection, HostTime now) {
   }
 }
 
+void Server::Work::handle_input(Connection& connection, const std::string& text, HostTime now) {
+  auto input = parse_form_input(text);
+  if (!input) return connection.close(CloseCode::policy, now, input.error().message);
+  const std::scoped_lock lock(inbox.mutex);
+  if (inbox.facts[form_fact] && inbox.inputs.size() < max_inputs)
+    inbox.inputs.push_back(*std::move(input));
+}
+
 void Server::Work::handle(Connection& connection, const std::string& text, HostTime now) {
   if (!connection.within_message_rate(now)) {
     connection.close(CloseCode::policy, now, "more than 128 messages per second");
@@ -187,6 +226,7 @@ void Server::Work::handle(Connection& connection, const std::string& text, HostT
     handle_foxglove(connection, text, now);
     return;
   }
+  if (text.starts_with("form")) return handle_input(connection, text, now);
   const auto command = parse_command(text);
   if (!command) {
     connection.close(CloseCode::policy, now, command.error().message);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <deque>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -10,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "web/client_commands.hpp"
 #include "web/connection.hpp"
 #include "web/foxglove_feed.hpp"
 #include "web/http_request.hpp"
@@ -62,11 +64,15 @@ public:
     HostTime next_marks{}; ///< the earliest time of the next message about clay or a wire
     Facts facts;           ///< messages; null until they are set
     std::array<std::uint64_t, fact_count> versions{}; ///< the last versions of versioned facts
-    std::vector<Weights> weights;                     ///< oldest first
+    std::optional<Pictures> pictures;                 ///< set by set_pictures(), not taken yet
+    std::deque<FormInput> inputs;                     ///< at most max_inputs
+    std::optional<File> file;
+    std::vector<Weights> weights; ///< oldest first
     std::uint64_t weights_in_use = 0;
   } inbox;
 
 private:
+  static constexpr std::size_t max_inputs = 64;
   void run();
   void wait();
   void take_presented();
@@ -81,6 +87,9 @@ private:
                    HostTime now);
   void send_picture(Connection& connection, const HttpRequest& request, HostTime now);
   void read_socket(Connection& connection, HostTime now);
+  void begin_file(Connection& connection, const HttpHead& head, HostTime now);
+  void take_file(Connection& connection, HostTime now);
+  void handle_input(Connection& connection, const std::string& text, HostTime now);
   void handle(Connection& connection, const std::string& text, HostTime now);
   void greet_foxglove(Connection& connection, HostTime now);
   void handle_foxglove(Connection& connection, const std::string& text, HostTime now);

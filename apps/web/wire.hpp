@@ -29,7 +29,9 @@ enum class MessageType : std::uint8_t {
   clay = 8,
   commands = 9,
   devices = 10,
-  wire = 11
+  wire = 11,
+  form = 12,
+  figures = 13
 };
 enum class StepKind : std::uint8_t { draw = 0, bake = 1 };
 enum class StepContent : std::uint8_t { fields = 0, vectors = 1 };
@@ -187,7 +189,8 @@ private:
 float as_float(double value) noexcept;
 
 UpdateHead head_of(const flow::Frame& frame) noexcept;
-/// Returns a text message: report, settings, commands or devices. Allocates.
+/// Returns a text message: report, settings, commands, devices, form
+/// or figures. Allocates.
 std::vector<std::byte> text_message(MessageType type, std::string_view text);
 /// Returns the history message. Allocates.
 std::vector<std::byte> message_of(const flow::StepList& steps);

@@ -28,6 +28,7 @@ bool is_within(std::string_view part, std::string_view whole) {
 void check_head(std::string_view bytes) {
   const HttpHead head = parse_head(bytes);
   require(head.bytes <= std::min(bytes.size(), max_head_bytes));
+  require(head.status != 200 || head.body_bytes <= max_file_bytes);
   if (head.status != 200) return;
   require(bytes.substr(head.bytes - 4, 4) == "\r\n\r\n");
   require(head.request.headers.size() <= max_headers);
@@ -74,6 +75,10 @@ void check_settings(const NamedSettings& named) {
 
 // Whatever is understood is something that a loop may be asked for.
 void check_words(std::string_view text) {
+  if (const auto input = parse_form_input(text))
+    require(!input->control.empty() && input->control.size() + input->value.size() < text.size());
+  if (const auto name = file_name_in(text))
+    require(!name->empty() && name->front() != '.' && name->find('/') == std::string::npos);
   const auto asked = parse_command(text);
   require(asked || asked.error().message.size() <= max_close_reason);
   if (!asked) return;

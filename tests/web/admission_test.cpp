@@ -48,6 +48,7 @@ TEST_SUITE("admission") {
     CHECK(answer({.path = "/model"}).resource == Resource::model);
     CHECK(answer({.path = "/picture"}).resource == Resource::picture);
     CHECK(answer({.path = "/skin"}).resource == Resource::skin);
+    CHECK(answer({.path = "/open", .method = "POST"}).resource == Resource::file);
     CHECK(answer({.host = "localhost:9", .origin = "http://localhost:9"}).status == 200);
     CHECK(answer({.host = "[::1]:9", .origin = "http://[::1]:9"}).status == 200);
     CHECK(answer({.origin = ""}).status == 200); // no browser says none for a WebSocket
@@ -85,6 +86,10 @@ TEST_SUITE("admission") {
 
   TEST_CASE("a refusal has its own number and says why") {
     CHECK(answer({.method = "POST"}).status == 405);
+    CHECK(answer({.path = "/open"}).status == 405);
+    CHECK(answer({.path = "/open", .token_given = "x", .method = "POST"}).status == 403);
+    CHECK(answer({.path = "/open", .origin = "http://evil.example", .method = "POST"}).status ==
+          403);
     CHECK(answer({.path = "/etc/passwd"}).status == 404);
     CHECK(answer({.path = "/../ws"}).status == 404);
     CHECK(answer({.path = "/picture/0"}).status == 404);

@@ -290,6 +290,21 @@ TEST_SUITE("client_commands") {
       CHECK_FALSE(parse_command(text));
     }
   }
+
+  TEST_CASE("the input of a form is the id of a control, and its value") {
+    const auto pressed = parse_form_input("form\tOpen a file...\t");
+    REQUIRE(pressed);
+    CHECK(pressed->control == "Open a file...");
+    CHECK(pressed->value.empty());
+    const auto typed = parse_form_input("form\tfile name\tmy scan.obj");
+    REQUIRE(typed);
+    CHECK(typed->value == "my scan.obj");
+    for (const auto* wrong : {"form", "form\t", "form\t\tvalue", "form x", "formula\ta\tb",
+                              "form\ta\tb\tc", "form\ta\tb\nc"}) {
+      CAPTURE(wrong);
+      CHECK_FALSE(parse_form_input(wrong));
+    }
+  }
 }
 
 } // namespace client_commands_test

@@ -66,6 +66,34 @@ TEST_SUITE("http_request") {
     CHECK(status_of("GET / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n") == 413);
   }
 
+  TEST_CASE("a POST has a body of one length, which has a limit") {
+    const auto length_of = [](const std::string& lines) {
+      const HttpHead head = parse_head("POST /open HTTP/1.1\r\n" + lines + "\r\n");
+      return head.status == 200 ? static_cast<int>(head.body_bytes) : -head.status;
+    };
+    CHECK(length_of("") == 0);
+    CHECK(length_of("Content-Length: 5\r\n") == 5);
+    CHECK(length_of("Content-Length: 134217728\r\n") == 134217728);
+    CHECK(length_of("Content-Length: 134217729\r\n") == -413);
+    CHECK(length_of("Content-Length: 99999999999999999999\r\n") == -400);
+    CHECK(length_of("Content-Length: 5\r\nContent-Length: 6\r\n") == -400);
+    for (const auto* wrong : {"-5", "+5", "0x5", "5,5", "5 5", ""})
+      CHECK(length_of("Content-Length: " + std::string(wrong) + "\r\n") == -400);
+    CHECK(length_of("Transfer-Encoding: chunked\r\n") == -413);
+  }
+
+  TEST_CASE("the name of a file has no path") {
+    CHECK(file_name_in("my%20scan.obj") == "my scan.obj");
+    CHECK(file_name_in("gr%C3%BCn.ply") == "gr\xC3\xBCn.ply");
+    for (const auto* wrong :
+         {"", ".obj", "..", "a/b.obj", "a%2fb.obj", "a%00.obj", "a%0A.obj", "a%", "a%2", "a%zz"}) {
+      CAPTURE(wrong);
+      CHECK_FALSE(file_name_in(wrong));
+    }
+    CHECK(file_name_in(std::string(100, 'a')));
+    CHECK_FALSE(file_name_in(std::string(101, 'a')));
+  }
+
   TEST_CASE("length and number of headers have limits") {
     std::string many = "GET / HTTP/1.1\r\n";
     for (std::size_t n = 0; n < max_headers; ++n)

@@ -273,6 +273,58 @@ TEST_SUITE("run_web") {
     CHECK(program.wait() == 0);
   }
 
+  TEST_CASE("a studio on a page begins runs, opens files that are sent to it, and refuses others") {
+    const test::TemporaryFolder folder;
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path()); // where the files go
+    ::setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
+    test::Program program({"studio", "--web", "0", "--left", "sim:rest"});
+    ::unsetenv("XDG_STATE_HOME");
+    fs::current_path(before);
+    const Address address = address_of(program);
+    REQUIRE(address.token.size() == 32);
+    Browser browser{address, {}, {}};
+    const auto sees = [&](const std::string& words) {
+      while (const auto frame = browser.client->next()) {
+        if (frame->opcode == 8) return false;
+        const std::string text(reinterpret_cast<const char*>(frame->payload.data()),
+                               frame->payload.size());
+        if (text[0] == 12 && text.find(words) != std::string::npos) return true;
+      }
+      return false;
+    };
+    const auto send = [&](const std::string& name, const std::string& bytes) {
+      WebClient client(address.port, address.token);
+      client.send("POST " + client.with_token("/open") + "&name=" + name +
+                  " HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: " +
+                  std::to_string(bytes.size()) + "\r\n\r\n" + bytes);
+      return client.answer().status;
+    };
+    browser.connect();
+    REQUIRE(sees("With this model"));
+    CHECK(browser.follower->name.empty());
+    CHECK(send("hostile.obj", "f 1 2 3 4 5\nv nan nan") == 200);
+    REQUIRE(sees("hostile.obj"));
+    browser.client->send_text("form\tClose\t");
+    CHECK(send("program.sh", "rm") == 200);
+    REQUIRE(sees("program.sh: the studio opens"));
+    browser.client->send_text("form\tClose\t");
+    CHECK(send("scan.obj",
+               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n") == 200);
+    CHECK(browser.client->close_code() == 1012);
+    test::eventually([&] {
+      browser.connect();
+      return browser.follower->name == "scan.obj";
+    });
+    REQUIRE(sees("Shaping"));
+    browser.client->send_text("form\tStart\t");
+    CHECK(browser.client->close_code() == 1012);
+    browser.connect();
+    REQUIRE(sees("With this model"));
+    program.signal(SIGTERM);
+    CHECK(program.wait().exit_code == 0);
+  }
+
   TEST_CASE("an address that is none, or not this machine's, is one line before anything begins") {
     const auto nonsense = test::nendo({"run", "--left", "sim", "--web", "localhost:80"});
     CHECK(nonsense.exit_code == 2);

@@ -192,6 +192,55 @@ TEST_SUITE("server") {
     CHECK_FALSE(server->next_command());
   }
 
+  TEST_CASE("a server with a form takes its input, and files one at a time") {
+    const auto server = open_server();
+    const auto post = [&](const std::string& name, const std::string& bytes) {
+      WebClient client(*server);
+      client.send("POST " + client.with_token("/open") + "&name=" + name +
+                  " HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: " +
+                  std::to_string(bytes.size()) + "\r\n\r\n" + bytes);
+      return client.answer().status;
+    };
+    server->present_nothing();
+    CHECK(post("a.obj", "v 0 0 0") == 404); // this server has no form
+    server->set_form("{}");
+    CHECK(post("..%2Fa.obj", "v 0 0 0") == 400);
+    const std::string large(3'000'000, 'v');
+    REQUIRE(post("my%20scan.obj", large) == 200);
+    CHECK(post("b.obj", "") == 503);
+    const auto file = server->take_file();
+    REQUIRE(file);
+    CHECK(file->name == "my scan.obj");
+    CHECK(file->bytes == large);
+    CHECK_FALSE(server->take_file());
+    WebClient client(*server);
+    REQUIRE(client.open_socket() == 101);
+    const auto form = client.next();
+    REQUIRE(form);
+    CHECK(form->payload[0] == std::byte{12});
+    client.send_text("form\tPull\t");
+    REQUIRE(eventually([&] {
+      const auto input = server->next_input();
+      return input && input->control == "Pull";
+    }));
+    client.send_text("form\tPull");
+    REQUIRE(eventually([&] { return server->next_input().has_value(); }));
+    client.send_text("form Pull");
+    CHECK(client.close_code() == 1008);
+  }
+
+  TEST_CASE("a file that does not come is not waited for") {
+    ServerLimits limits;
+    limits.request_timeout = std::chrono::milliseconds(200);
+    const auto server = open_server(limits);
+    server->set_form("{}");
+    WebClient client(*server);
+    client.send("POST " + client.with_token("/open") +
+                "&name=a.obj HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100\r\n\r\nv");
+    CHECK(client.is_closed());
+    CHECK_FALSE(server->take_file());
+  }
+
   TEST_CASE("also over the network, a follower has the shape that the loop ends with") {
     for (const auto& way : {std::pair<flow::Mode, const char*>{flow::Mode::type1, nullptr},
                             {flow::Mode::type2, nullptr},

@@ -1,7 +1,7 @@
 // Comes, looks, and comes again when the connection is lost.
 const token = location.hash.slice(1)
 const holds = new Holds()
-let socket = null, latest = null, patience = 500, dirty = true, scene = null, trouble = ''
+let socket = null, latest = null, patience = 500, dirty = true, scene = null, trouble = '', seen = ''
 const SERVICE_RESTART = 1012
 const counts = { updates: 0, updateBytes: 0, shapes: 0, weights: 0, bakes: 0, draws: 0 }
 
@@ -17,6 +17,7 @@ try {
 new Tips()
 const camera = new Camera(element('scene'), () => { dirty = true })
 panel.camera = camera
+const form = new Form(ask, fetchPicture, words => panel.say(words))
 const mover = new HandMover(element('scene'), camera, () => scene && scene.shape && latest &&
   { hands: latest.hands, origin: scene.origin, pixelOf: place => scene.pixelOf(place) })
 
@@ -44,7 +45,9 @@ async function connect() {
   } catch (error) {
     return again('No answer from nendo; has the run ended?')
   }
+  if (panel.model && panel.model.name !== model.name) [latest, seen] = [null, ''] // the picture shows all of it
   panel.setModel(model)
+  form.pictures.clear()
   holds.begin()
   if (scene) {
     scene.setModel(model, fetchPicture, () => { dirty = true })
@@ -89,6 +92,8 @@ function open(model) {
     else if (type === 9) panel.setStates(readCommands(data))
     else if (type === 10) panel.setDevices(readDevices(data))
     else if (type === 11) marks.wire = readWire(data)
+    else if (type === 12) form.take(JSON.parse(textIn(data)))
+    else if (type === 13) takeFigures(JSON.parse(textIn(data)))
     else if (type === 1) stale = !takeShape(readShape(data), model)
     else takeUpdate(readUpdate(data, model))
     if (stale) socket.close()
@@ -101,6 +106,16 @@ function open(model) {
 function takeSettings(settings) {
   panel.setSettings(settings)
   if (scene) Object.assign(scene, { radii: settings.radius_m, isByHands: ['clay', 'parts'].includes(settings.mode) })
+}
+
+function takeFigures(figures) {
+  if (!scene) return
+  scene.figures.take(figures)
+  const { view } = figures, text = JSON.stringify(view)
+  if (!view || text === seen) return
+  seen = text
+  camera.see(view)
+  camera.look(view.azimuth * Math.PI / 180, view.elevation * Math.PI / 180)
 }
 
 function takeWeights(weights, model) {

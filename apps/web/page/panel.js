@@ -127,6 +127,8 @@ class Panel {
   }
   // What the panel covers of the page's width.
   covered() {
+    const ways = element('form-ways')
+    if (ways && !ways.hidden) return ways.getBoundingClientRect().right / innerWidth
     const panel = element('panel')
     return panel.classList.contains('folded') ? 0 : Math.min(0.4, panel.getBoundingClientRect().right / innerWidth)
   }

@@ -3,6 +3,7 @@ const CLAY = { colour: [0.44, 0.20, 0.115], gloss: 0.07, opacity: 1, rim_opacity
 // A hand is opaque before the ground, and one sees the model through it. A silent glove's is a mere shade.
 const SKIN = { colour: [0.33, 0.345, 0.37], gloss: 0.10, opacity: 0.64, rim_opacity: 1 }
 const SILENT = { colour: [0.22, 0.22, 0.22], gloss: 0, opacity: 0.25, rim_opacity: 0.85 }
+const GHOST = { colour: [0.10, 0.28, 0.62], gloss: 0, opacity: 0.20, rim_opacity: 0.75 }
 const BONE = { colour: [0.80, 0.78, 0.70], gloss: 0.10, opacity: 1, rim_opacity: 1 }
 const ARROW = { colour: [0.95, 0.52, 0.02], gloss: 0.20, opacity: 1, rim_opacity: 1 }
 const WIRE = { ...BONE, colour: [0.15, 0.15, 0.17], gloss: 0.30 }
@@ -35,6 +36,8 @@ class Scene {
     this.radii = [0, 0, 0, 0, 0]
     Object.assign(this, { parts, marks })
     this.skins = null // of the left and of the right hand, when they have come
+    this.readSkin = null // that they are made of
+    this.figures = new Figures(this)
     const light = glsl('plain') + glsl('light')
     this.model = makeProgram(gl, glsl('deform') + glsl('model'), glsl('paint') + glsl('light'))
     this.skin = makeProgram(gl, glsl('skin'), light)
@@ -62,7 +65,8 @@ class Scene {
     this.shape = new Shape(this.gl, model)
     this.paint = new Paint(this.gl, model, fetchPicture, changed)
     this.scale = model.unit / model.unitsPerMetre
-    if (!this.origin) this.findPlace(model) // a new connection does not move the picture
+    if (this.name !== model.name) this.findPlace(model) // a new connection does not move the picture
+    this.name = model.name
     this.offset = minus(times(model.origin, 1 / model.unitsPerMetre), this.origin)
   }
   // The model is on the ground about the middle, as large as on the stage. There may be none, but hands alone.
@@ -105,17 +109,20 @@ class Scene {
     gl.bindVertexArray(null)
   }
 
-  setSkin(skin) { this.skins = [-1, 1].map(side => new Skin(this.gl, skin, side)) }
+  setSkin(skin) {
+    this.readSkin = skin
+    this.skins = [-1, 1].map(side => new Skin(this.gl, skin, side))
+  }
   // Depth first, so that only its nearest layer is mixed in.
-  drawSkin({ slot, hand, joints }) {
-    const { gl } = this, material = hand.silent ? SILENT : SKIN
-    this.skins[slot].draw(this.skin, hand.bones, joints, { ...this.view, ...LIT, ...material }, triangles => {
+  drawSkin({ skin, bones, joints, look, isShade }) {
+    const { gl } = this
+    skin.draw(this.skin, bones, joints, { ...this.view, ...LIT, ...look }, triangles => {
       gl.colorMask(false, false, false, false)
       triangles()
       gl.colorMask(true, true, true, true)
-      gl.stencilFunc(hand.silent ? gl.ALWAYS : gl.EQUAL, SOLID, 255)
+      gl.stencilFunc(isShade ? gl.ALWAYS : gl.EQUAL, SOLID, 255)
       triangles()
-      if (hand.silent) return
+      if (isShade) return
       gl.stencilFunc(gl.NOTEQUAL, SOLID, 255)
       this.skin.set({ opacity: 1 })
       triangles()
@@ -155,7 +162,7 @@ class Scene {
     const beside = this.beside(update, holds)
     this.shape.prepare()
     gl.enable(gl.STENCIL_TEST)
-    this.drawGround(beside)
+    if (update) this.drawGround(beside)
     gl.clear(gl.STENCIL_BUFFER_BIT)
     gl.stencilFunc(gl.ALWAYS, SOLID, 255)
     gl.stencilOp(gl.KEEP, gl.KEEP, gl.REPLACE)
@@ -164,6 +171,7 @@ class Scene {
     this.capsules(beside.bones, BONE)
     this.capsules(beside.arrows, ARROW)
     this.capsules(beside.wire, WIRE)
+    if (!update) this.drawMarks()
     beside.contacts.forEach((some, at) => this.capsules(some, CONTACTS[at]))
     gl.stencilOp(gl.KEEP, gl.KEEP, gl.KEEP)
     beside.skins.forEach(skin => this.drawSkin(skin))
@@ -173,9 +181,18 @@ class Scene {
     gl.depthMask(true)
   }
 
+  drawMarks() {
+    for (const { from, to, radius, colour } of this.figures.marks) {
+      const one = new Capsules()
+      one.add(from, to, radius, radius)
+      this.capsules(one, { ...BONE, colour })
+    }
+  }
+
   // What there is beside the model, about the scene's origin.
   beside(update, holds) {
     const parts = { bones: new Capsules(), arrows: new Capsules(), reaches: new Capsules(), wire: new Capsules(), contacts: CONTACTS.map(() => new Capsules()), skins: [] }
+    if (!update) parts.skins.push(...this.figures.hands)
     if (!update) return parts
     if (this.isByHands && this.parts.contact && this.marks.clay) this.addContacts(parts.contacts)
     this.marks.wire.forEach((ends, at) => { // the newest, and what it has swept
@@ -186,7 +203,8 @@ class Scene {
       if (!given) return
       const place = at => minus(at, this.origin)
       const joints = given.joints.map(joint => ({ place: place(joint.place), turn: joint.turn }))
-      if (this.parts.hands && this.skins) parts.skins.push({ slot, hand: given, joints })
+      if (this.parts.hands && this.skins)
+        parts.skins.push({ skin: this.skins[slot], bones: given.bones, joints, look: given.silent ? SILENT : SKIN, isShade: given.silent })
       if (this.parts.bones) bonesOf({ joints }, parts.bones)
       const starts = holds.starts[slot]
       if (!update.held || !starts || this.isByHands || update.isPuppet) return // their tips hold nothing
@@ -223,8 +241,8 @@ class Scene {
     const shadow = { dark: 0.2, fade, shadow: this.view.key }
     this.model.use({ ...this.view, ...LIT, ...CLAY, ...shadow, scale: this.scale, offset: this.offset })
     this.shape.draw(this.model)
-    for (const { slot, hand, joints } of beside.skins)
-      this.skins[slot].draw(this.skin, hand.bones, joints, { ...this.view, ...LIT, ...CLAY, ...shadow }, triangles => triangles())
+    for (const { skin, bones, joints } of beside.skins)
+      skin.draw(this.skin, bones, joints, { ...this.view, ...LIT, ...CLAY, ...shadow }, triangles => triangles())
     gl.depthMask(true)
   }
 }

@@ -1,0 +1,141 @@
+#include "studio/page_form.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <nendo/base/number_in.hpp>
+#include <nendo/base/text.hpp>
+
+namespace nendo::studio {
+namespace {
+
+constexpr const char* tone_names[] = {"", "faint", "warning", "success", "title"};
+
+} // namespace
+
+void PageForm::begin(std::optional<web::FormInput> input) {
+  parts_ = Json::array();
+  same_.clear();
+  input_ = std::move(input);
+}
+
+void PageForm::part(std::string_view name) {
+  parts_.push_back({{"name", name}, {"controls", Json::array()}});
+  in_line_ = 1;
+}
+
+std::string PageForm::message(std::string_view screen) const {
+  const Json whole{{"screen", screen}, {"parts", parts_}};
+  return whole.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// A picture that is as one before has its number, so that their list does not grow.
+std::size_t PageForm::number_of(const render::Image& picture) {
+  const auto [known, is_new] = numbers_.try_emplace(&picture);
+  if (!is_new) return known->second;
+  const auto png = render::png_of(picture);
+  const std::string contents = png ? *png : std::string();
+  const auto same =
+      std::ranges::find_if(pictures_, [&](const auto& one) { return *one == contents; });
+  known->second = static_cast<std::size_t>(same - pictures_.begin());
+  if (same != pictures_.end()) return known->second;
+  pictures_.push_back(std::make_shared<const std::string>(contents));
+  has_new_pictures_ = true;
+  return known->second;
+}
+
+PageForm::Json PageForm::control(const char* kind, std::string_view name, std::string_view help) {
+  const int before = same_[std::string(name)]++;
+  std::string id(name);
+  if (before > 0) id += '#' + std::to_string(before);
+  return {{"kind", kind}, {"id", std::move(id)}, {"name", name}, {"help", help}};
+}
+
+std::optional<std::string> PageForm::changed(Json control) {
+  const bool is_meant = input_ && control["id"] == input_->control;
+  parts_.back()["controls"].push_back(std::move(control));
+  if (!is_meant) return std::nullopt;
+  return std::exchange(input_, std::nullopt)->value;
+}
+
+void PageForm::separator() {
+  in_line_ = 1;
+  parts_.back()["controls"].push_back({{"kind", "separator"}});
+}
+
+void PageForm::text(std::string_view words, Tone tone) {
+  parts_.back()["controls"].push_back(
+      {{"kind", "text"}, {"name", words}, {"look", tone_names[static_cast<std::size_t>(tone)]}});
+}
+
+void PageForm::title(std::string_view words, std::string_view note) {
+  parts_.back()["controls"].push_back({{"kind", "title"}, {"name", words}, {"note", note}});
+}
+
+void PageForm::file(std::string_view name, std::string_view help) {
+  parts_.back()["controls"].push_back(control("file", name, help));
+}
+
+bool PageForm::button(std::string_view name, std::string_view help, Look look) {
+  Json one = control("button", name, help);
+  one["share"] = in_line_;
+  one["look"] = look == Look::grey ? "grey" : look == Look::chosen ? "chosen" : "";
+  return changed(std::move(one)) && look != Look::grey;
+}
+
+bool PageForm::card(std::string_view name, const render::Image* picture, std::string_view help,
+                    bool is_chosen) {
+  Json one = control("button", name, help);
+  one["share"] = in_line_;
+  one["look"] = is_chosen ? "chosen" : "";
+  one["picture"] = nullptr;
+  if (picture != nullptr) one["picture"] = number_of(*picture);
+  return changed(std::move(one)).has_value();
+}
+
+bool PageForm::check(std::string_view name, std::string_view help, bool& value) {
+  Json one = control("check", name, help);
+  one["value"] = value;
+  const auto given = changed(std::move(one));
+  if (!given || (*given == "true") == value) return false;
+  value = !value;
+  return true;
+}
+
+bool PageForm::choice(std::string_view name, std::string_view help,
+                      std::span<const std::string_view> names, std::size_t& chosen) {
+  Json one = control("choice", name, help);
+  one["value"] = names[chosen];
+  one["choices"] = names;
+  const auto given = changed(std::move(one));
+  const auto found = given ? std::ranges::find(names, *given) : names.end();
+  if (found == names.end()) return false;
+  chosen = static_cast<std::size_t>(found - names.begin());
+  return true;
+}
+
+bool PageForm::number(std::string_view name, std::string_view help, float& value, float min,
+                      float max, std::string_view unit) {
+  Json one = control("number", name, help);
+  one["value"] = value;
+  one["min"] = min;
+  one["max"] = max;
+  one["unit"] = unit;
+  const auto given = changed(std::move(one));
+  const auto number = given ? to_finite_number(*given) : std::nullopt;
+  if (!number) return false;
+  value = std::clamp(static_cast<float>(*number), min, max);
+  return true;
+}
+
+bool PageForm::line(std::string_view name, std::string& value) {
+  Json one = control("line", name, {});
+  one["value"] = value;
+  const auto given = changed(std::move(one));
+  if (!given) return false;
+  value = *given;
+  return true;
+}
+
+} // namespace nendo::studio

@@ -1,0 +1,68 @@
+#include "studio/page_run.hpp"
+
+#include <utility>
+
+#include "session/kept_state.hpp"
+#include "session/run_saving.hpp"
+
+namespace nendo::studio {
+
+using session::Asks;
+using session::RunStatus;
+
+Wish describe_bar(PageForm& form, Screen now, const std::string& file) {
+  Wish wish;
+  form.part("bar");
+  form.lines_of(0);
+  for (const Tab& tab : tabs) {
+    const bool is_now = tab.screen == now;
+    const auto look = is_now ? Form::Look::chosen : Form::Look::plain;
+    if (form.button(tab.name, tab.help, look) && !is_now) wish = Go{tab.screen};
+  }
+  if (!file.empty()) form.text(file, Form::Tone::faint);
+  return wish;
+}
+
+void PageRun::update(const RunStatus& status, Asks& asks) {
+  form_.begin(server_.next_input());
+  const bool is_modified = status.saving->is_modified(status.frame);
+  const Screen now = status.frame.function_count > 0 ? Screen::puppet : Screen::shaping;
+  const Wish wish = describe_bar(form_, now, file_ + (is_modified ? " *" : ""));
+  if (is_wish(wish)) go(wish, status, asks);
+  const bool is_saved = std::exchange(saves_, status.saving->saves()) != status.saving->saves();
+  if (is_saved) session::keep_recent_file(status.saving->saved());
+  if (saves_first_ && is_saved) leave(asks);
+  if (is_wish(waiting_)) ask(asks);
+  server_.set_form(form_.message("shaping"));
+}
+
+/// A save that fails keeps the user here.
+void PageRun::report(const session::Report& message) {
+  if (message.is_error) saves_first_ = false;
+}
+
+void PageRun::go(const Wish& wish, const RunStatus& status, Asks& asks) {
+  waiting_ = wish;
+  if (!asks_to_save_ || !status.saving->is_modified(status.frame)) leave(asks);
+}
+
+void PageRun::ask(Asks& asks) {
+  form_.part("dialog");
+  form_.text("Save the shape of " + file_ + "?");
+  form_.lines_of(3);
+  if (form_.button("Save", "", Form::Look::chosen)) {
+    saves_first_ = true;
+    asks.emplace_back(flow::SaveShape{});
+  }
+  if (form_.button("Discard", "")) leave(asks);
+  if (form_.button("Stay", "")) waiting_ = {};
+}
+
+void PageRun::leave(Asks& asks) {
+  left_for_ = std::exchange(waiting_, {});
+  is_settled_ = asks_to_save_;
+  saves_first_ = false;
+  asks.emplace_back(flow::EndRun{});
+}
+
+} // namespace nendo::studio

@@ -1,0 +1,49 @@
+#pragma once
+// A run of the studio on a page: the tabs over it, and a question before a changed shape is lost.
+// Main thread.
+
+#include <cstdint>
+#include <string>
+
+#include "session/observer.hpp"
+#include "studio/page_form.hpp"
+#include "studio/wish.hpp"
+#include "web/server.hpp"
+
+namespace nendo::studio {
+
+/// Describes the tabs, and the name of the file. Returns what was clicked.
+Wish describe_bar(PageForm& form, Screen now, const std::string& file);
+
+class PageRun final : public session::Observer {
+public:
+  /// `file` is the model's name. `asks_to_save`: leaving asks whether the shape is saved, and a run
+  /// that is left does not write it.
+  PageRun(web::Server& server, std::string file, bool asks_to_save)
+      : server_(server), file_(std::move(file)), asks_to_save_(asks_to_save) {}
+
+  void update(const session::RunStatus& status, session::Asks& asks) override;
+  void report(const session::Report& message) override;
+  bool stays_open() const noexcept override { return true; }
+  bool has_settled_shape() const noexcept override { return is_settled_; }
+
+  /// Returns where the user went when the run was left; nothing to wish: it ended by itself.
+  const Wish& left_for() const noexcept { return left_for_; }
+
+private:
+  void go(const Wish& wish, const session::RunStatus& status, session::Asks& asks);
+  void ask(session::Asks& asks);
+  void leave(session::Asks& asks);
+
+  web::Server& server_;
+  PageForm form_;
+  std::string file_;
+  bool asks_to_save_;
+  bool is_settled_ = false;
+  Wish waiting_; ///< where the user goes once it is settled what becomes of the shape
+  Wish left_for_;
+  bool saves_first_ = false;
+  std::uint32_t saves_ = 0; ///< the number of saves of the run so far
+};
+
+} // namespace nendo::studio

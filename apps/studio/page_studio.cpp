@@ -1,0 +1,177 @@
+#include "studio/page_studio.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
+#include <utility>
+
+#include <nendo/base/files.hpp>
+#include <nendo/base/text.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/model_files.hpp"
+#include "session/kept_state.hpp"
+#include "studio/opened_files.hpp"
+#include "studio/page_figures.hpp"
+#include "studio/page_form.hpp"
+#include "studio/page_run.hpp"
+#include "studio/start_choices.hpp"
+
+namespace nendo::studio {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::chrono::milliseconds picture_time(33);
+
+/// Writes a file that came from a browser into the current folder, beside what runs save there.
+Result<std::string> store(const web::Server::File& file) {
+  const auto endings = openable();
+  if (std::ranges::none_of(endings,
+                           [&](const auto& ending) { return file.name.ends_with(ending); }))
+    return Error{Errc::bad_input, printable(file.name) +
+                                      ": the studio opens .obj, .ply, .stl, .gltf, .glb, "
+                                      ".puppet.toml and .nendo"};
+  fs::path place(file.name);
+  for (int number = 1; fs::exists(place); ++number)
+    place = fs::path(file.name).stem().string() + "-" + std::to_string(number) +
+            fs::path(file.name).extension().string();
+  if (const auto written = replace_file(place, file.bytes); !written) return written.error();
+  return place.string();
+}
+
+class PageStudio final : public Studio {
+public:
+  PageStudio(std::shared_ptr<web::Server> server, StudioOptions options)
+      : server_(std::move(server)), options_(std::move(options)) {}
+
+  std::optional<Shape> choose() override {
+    cli::install_stop_signals();
+    if (std::exchange(has_run_, false)) server_->present_nothing();
+    while (!is_over_ && !next_ && !cli::stop_requested()) {
+      const auto due = std::chrono::steady_clock::now() + picture_time;
+      show_one();
+      std::this_thread::sleep_until(due);
+    }
+    start_.reset(); // closes its gloves, which the run opens
+    form_.forget_images();
+    server_->set_figures(PageFigures().message());
+    return std::exchange(next_, std::nullopt);
+  }
+
+  session::Observer* observe(const session::RunOptions& run, bool asks_to_save) override {
+    view_ = std::make_unique<PageRun>(*server_, cli::short_name(run.mesh), asks_to_save);
+    has_run_ = true;
+    return view_.get();
+  }
+
+  bool goes_on() override {
+    const Wish wish = view_ ? view_->left_for() : Wish{};
+    if (!is_wish(wish)) is_over_ = true; // it has ended by itself
+    follow(wish);
+    return !is_over_;
+  }
+
+  void show_error(const std::string& message) override {
+    next_.reset();
+    error_ = message;
+  }
+
+  Result<void> end() override { return {}; }
+
+private:
+  void show_one() {
+    form_.begin(server_->next_input());
+    follow(describe_bar(form_, Screen::start, {}));
+    show_dialog();
+    show_start();
+    server_->set_form(form_.message("start"));
+    if (form_.has_new_pictures()) server_->set_pictures(form_.pictures());
+    if (const auto file = server_->take_file()) open_received(*file);
+  }
+
+  void show_dialog() {
+    if (!error_.empty()) {
+      form_.part("dialog");
+      form_.text(error_, Form::Tone::warning);
+      if (form_.button("Close", "")) error_.clear();
+    } else if (is_opening_) {
+      form_.part("dialog");
+      form_.title("Open a file", "");
+      form_.line("file name", file_);
+      form_.lines_of(2);
+      const auto look = file_.empty() ? Form::Look::grey : Form::Look::chosen;
+      if (form_.button("Open", "A file on the machine of the gloves.", look)) open(file_);
+      if (form_.button("Cancel", "")) is_opening_ = false;
+      form_.file("Choose a file of this device", "It is copied to the machine of the gloves.");
+    }
+  }
+
+  void show_start() {
+    if (!start_)
+      start_ = std::make_unique<StartChoices>(StartOptions{options_.gloves, options_.calibration});
+    PageFigures figures;
+    figures.add(start_->update());
+    figures.look_by({0.0, 12.0}, 0.48, 0.4, 0.04);
+    form_.part("ways");
+    follow(start_->describe_ways(form_, "Or drop one on this page: a model, a puppet."));
+    form_.part("hands");
+    form_.title("Your hands", "");
+    follow(start_->describe_hands(form_));
+    server_->set_figures(figures.message());
+  }
+
+  void follow(const Wish& wish) {
+    if (const auto* const shape = std::get_if<Shape>(&wish)) next_ = *shape;
+    if (const auto* const there = std::get_if<Go>(&wish)) go(*there);
+    if (const auto* const file = std::get_if<Open>(&wish)) open(file->file);
+    if (std::holds_alternative<Quit>(wish)) is_over_ = true;
+  }
+
+  void go(const Go& there) {
+    if (there.screen == Screen::shaping) next_ = Shape{};
+    if (there.screen == Screen::puppet) next_ = Shape{{}, {}, "face"};
+  }
+
+  void open(const std::string& file) {
+    is_opening_ = file.empty();
+    if (file.empty()) return;
+    std::error_code error;
+    if (!fs::is_regular_file(file, error))
+      return show_error(printable(file) + ": there is no such file on the machine of the gloves");
+    session::keep_recent_file(file);
+    if (file.ends_with(".toml"))
+      next_ = Shape{{}, {}, file};
+    else
+      next_ = Shape{file};
+  }
+
+  void open_received(const web::Server::File& file) {
+    const auto stored = store(file);
+    if (stored)
+      open(*stored);
+    else
+      show_error(stored.error().message);
+  }
+
+  std::shared_ptr<web::Server> server_;
+  StudioOptions options_;
+  PageForm form_;
+  std::unique_ptr<StartChoices> start_;
+  std::unique_ptr<PageRun> view_;
+  std::optional<Shape> next_;
+  std::string error_; ///< shown until it is closed
+  bool is_opening_ = false;
+  std::string file_;    ///< the name that is typed
+  bool has_run_ = true; ///< the server has another loop
+  bool is_over_ = false;
+};
+
+} // namespace
+
+Result<std::unique_ptr<Studio>> open_page_studio(const StudioOptions& options,
+                                                 std::shared_ptr<web::Server> server) {
+  return std::unique_ptr<Studio>(std::make_unique<PageStudio>(std::move(server), options));
+}
+
+} // namespace nendo::studio

@@ -1,0 +1,120 @@
+// Controls that the server describes (PROTOCOL.md, message 12): all are made here.
+const MAX_FILE = 128 << 20 // bytes that the server takes
+
+class Form {
+  // fetchPicture: as Paint takes it.
+  constructor(ask, fetchPicture, say) {
+    Object.assign(this, { ask, fetchPicture, say, parts: new Map(), pictures: new Map() })
+    document.addEventListener('dragover', event => event.preventDefault())
+    document.addEventListener('drop', event => {
+      event.preventDefault()
+      this.open(event.dataTransfer.files[0])
+    })
+  }
+  take({ screen, parts }) {
+    document.body.dataset.screen = screen
+    for (const [name, { section }] of this.parts) section.hidden = !parts.some(part => part.name === name)
+    for (const { name, controls } of parts) this.fill(this.partNamed(name), controls)
+  }
+  partNamed(name) {
+    if (!this.parts.has(name)) this.parts.set(name, { section: make('section', document.body, { id: 'form-' + name, className: 'form' }), shown: [] })
+    return this.parts.get(name)
+  }
+  // What is as before stays, with its focus.
+  fill({ section, shown }, controls) {
+    controls.forEach((wanted, at) => {
+      const now = shown[at], text = JSON.stringify(wanted)
+      if (now && now.text === text) return
+      const stays = now && now.kind === wanted.kind && now.id === wanted.id
+      const made = stays ? now : { kind: wanted.kind, id: wanted.id, ...this[wanted.kind](value => this.ask(`form\t${wanted.id}\t${value}`), wanted) }
+      if (!now) section.append(made.control)
+      else if (!stays) now.control.replaceWith(made.control)
+      made.control.setAttribute('data-control', wanted.name)
+      if (wanted.help) made.control.setAttribute('aria-description', wanted.help)
+      if (wanted.share) made.control.style.setProperty('--share', wanted.share)
+      made.control.className = [made.base, wanted.look, wanted.share === 0 ? 'flows' : ''].join(' ')
+      made.show(wanted)
+      shown[at] = Object.assign(made, { text })
+    })
+    for (const { control } of shown.splice(controls.length)) control.remove()
+  }
+
+  // Each makes a control, whose base is its class, and which calls back with a new value.
+  text() {
+    const control = document.createElement('p')
+    return { control, base: '', show: ({ name }) => setText(control, name) }
+  }
+  title(_, { note }) {
+    const control = document.createElement('h2'), words = make('span', control)
+    make('small', control, { textContent: note })
+    return { control, base: '', show: ({ name }) => setText(words, name) }
+  }
+  separator() { return { control: document.createElement('hr'), base: '', show() {} } }
+  button(give, { picture }) {
+    const control = document.createElement('button'), canvas = picture === undefined ? null : make('canvas', control, { width: 264, height: 198 })
+    const words = make('span', control)
+    control.addEventListener('click', () => give(''))
+    return { control, base: canvas ? 'card' : '', show: ({ name, look, picture }) => {
+      setText(words, name)
+      control.setAttribute('aria-disabled', look === 'grey')
+      if (canvas && picture !== null) this.paint(canvas, picture)
+    } }
+  }
+  async paint(canvas, number) {
+    if (!this.pictures.has(number)) this.pictures.set(number, this.fetchPicture(number).then(blob => blob && createImageBitmap(blob)))
+    const image = await this.pictures.get(number)
+    if (image) return canvas.getContext('2d').drawImage(image, 0, 0, canvas.width, canvas.height)
+    this.pictures.delete(number) // the message was faster
+    setTimeout(() => this.paint(canvas, number), 200)
+  }
+  labelled(base, parts) {
+    const control = document.createElement('label'), words = make('span', control)
+    return { control, base, inputs: parts.map(([kind, values]) => make(kind, control, values)), label: name => setText(words, name) }
+  }
+  check(give) {
+    const { inputs: [input], label, ...made } = this.labelled('box', [['input', { type: 'checkbox' }]])
+    input.addEventListener('change', () => give(input.checked))
+    return { ...made, show: ({ name, value }) => { label(name); input.checked = value } }
+  }
+  choice(give) {
+    const { inputs: [input], label, ...made } = this.labelled('field', [['select', {}]])
+    input.addEventListener('input', () => give(input.value))
+    return { ...made, show: ({ name, value, choices }) => {
+      label(name)
+      input.replaceChildren(...choices.map(choice => new Option(choice)))
+      input.value = value
+    } }
+  }
+  number(give, { min, max, unit }) {
+    const { inputs, label, ...made } = this.labelled('field', ['range', 'number'].map(type => ['input', { type, min, max, step: 'any' }]))
+    make('span', made.control, { className: 'unit', textContent: unit })
+    for (const input of inputs) input.addEventListener('input', () => give(input.value))
+    return { ...made, show: ({ name, value }) => {
+      label(name)
+      for (const input of inputs) if (input !== document.activeElement) input.value = Math.round(10 * value) / 10
+    } }
+  }
+  line(give) {
+    const { inputs: [input], label, ...made } = this.labelled('field', [['input', { type: 'text' }]])
+    input.addEventListener('input', () => give(input.value))
+    return { ...made, show: ({ name, value }) => { label(name); if (input !== document.activeElement) input.value = value } }
+  }
+  file() {
+    const { inputs: [input], label, ...made } = this.labelled('file', [['input', { type: 'file' }]])
+    input.addEventListener('change', () => this.open(input.files[0]))
+    return { ...made, show: ({ name }) => label(name) }
+  }
+
+  // A file of this device.
+  async open(file) {
+    if (!file || !document.body.dataset.screen) return
+    if (file.size > MAX_FILE) return this.say(`${file.name} is larger than 128 MB; copy it to the machine of the gloves, and open it by its name.`)
+    this.say(`Sending ${file.name} ...`)
+    try {
+      const answer = await fetch(`/open?token=${token}&name=${encodeURIComponent(file.name)}`, { method: 'POST', body: file })
+      this.say(answer.ok ? '' : await answer.text())
+    } catch (error) {
+      this.say(`${file.name} was not taken.`)
+    }
+  }
+}
