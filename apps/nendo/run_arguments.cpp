@@ -36,10 +36,16 @@ std::string dated_name() {
   return name;
 }
 
+/// Returns whether puppets or masks can be edited during the run.
+bool is_edited(const RunArguments& options) {
+  return options.view.window || !options.web.empty();
+}
+
 /// An existing file is overwritten only if it is the one that was opened.
 Result<void> check_out_puppet(const RunArguments& options) {
   if (options.out_puppet.empty()) return {};
-  if (!options.view.window) return Error{Errc::usage, "--out-puppet: needs the window; add --view"};
+  if (!is_edited(options))
+    return Error{Errc::usage, "--out-puppet: needs the window, or a page; add --view or --web"};
   std::error_code ignored;
   const bool is_opened =
       std::filesystem::equivalent(options.out_puppet, options.run.puppet_file, ignored);
@@ -75,7 +81,7 @@ Result<void> check_outputs(RunArguments& options) {
 Result<void> read_puppet(RunArguments& options) {
   session::RunOptions& run = options.run;
   std::error_code ignored;
-  if (options.view.window) {
+  if (is_edited(options)) {
     const bool is_opened =
         std::filesystem::equivalent(options.out_puppet, run.puppet_file, ignored);
     run.out_puppet = {options.out_puppet, options.force || is_opened};
@@ -88,7 +94,7 @@ Result<void> read_puppet(RunArguments& options) {
     run.loop.held = false;
     return {};
   }
-  if (is_named && options.view.window && options.out_puppet.empty())
+  if (is_named && is_edited(options) && options.out_puppet.empty())
     run.out_puppet = {run.puppet_file, true};
   if (run.puppet_file.empty()) return {};
   auto file = open_puppet(run.puppet_file);
@@ -258,7 +264,7 @@ Result<void> choose_files(RunArguments& options) {
     run.mesh =
         cli::shipped_model(run.loop.sculptor.mode == flow::Mode::clay ? "clay.ply" : "moai.obj")
             .string();
-  if (options.view.window && run.out_puppet.file.empty() && !run.over)
+  if (is_edited(options) && run.out_puppet.file.empty() && !run.over)
     run.out_puppet.file =
         std::filesystem::path(cli::short_name(run.mesh)).replace_extension(".puppet.toml").string();
   return {};

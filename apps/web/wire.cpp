@@ -158,10 +158,15 @@ std::vector<std::byte> message_of(std::uint32_t number, const puppet::Rig* rig) 
   std::size_t bytes = puppet_head_bytes;
   for (const puppet::Function& function : functions)
     bytes += 2 + function.name.size() + function.input.name().size();
+  // Masks of a puppet that is played are in its weights.
+  const bool has_masks = rig != nullptr && !rig->puppet().is_played();
+  const std::span<const puppet::Mask> masks =
+      has_masks ? std::span(rig->puppet().masks) : std::span<const puppet::Mask>();
+  bytes += sizeof(std::uint32_t) + mask_bytes * masks.size();
   std::vector<std::byte> message(bytes);
   WireWriter out(message);
   out.put(static_cast<std::uint8_t>(MessageType::puppet));
-  out.put(std::uint8_t{0});
+  out.put(static_cast<std::uint8_t>(has_masks && rig->puppet().inverted ? 1 : 0));
   out.put(static_cast<std::uint16_t>(functions.size()));
   out.put(number);
   const auto put_text = [&out](const std::string& text) { // of at most 64 letters
@@ -172,6 +177,11 @@ std::vector<std::byte> message_of(std::uint32_t number, const puppet::Rig* rig) 
   for (const puppet::Function& function : functions) {
     put_text(function.name);
     put_text(function.input.name());
+  }
+  out.put(static_cast<std::uint32_t>(masks.size()));
+  for (const puppet::Mask& mask : masks) {
+    out.put(Eigen::Vector3f(mask.at.cast<float>()));
+    out.put(as_float(mask.radius));
   }
   return message;
 }

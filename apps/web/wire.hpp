@@ -135,6 +135,7 @@ inline constexpr std::size_t text_head_bytes = 4; ///< the type, and three zeros
 inline constexpr std::size_t history_head_bytes = 8;
 inline constexpr std::size_t history_step_bytes = 8;
 inline constexpr std::size_t puppet_head_bytes = 8; ///< the puppet message
+inline constexpr std::size_t mask_bytes = 16;
 
 /// Returns whether each frame has this joint's rotation. Other joints are fixed to their parents.
 constexpr bool rotation_is_sent(hand::Joint joint) noexcept {
@@ -194,7 +195,8 @@ UpdateHead head_of(const flow::Frame& frame) noexcept;
 std::vector<std::byte> text_message(MessageType type, std::string_view text);
 /// Returns the history message. Allocates.
 std::vector<std::byte> message_of(const flow::StepList& steps);
-/// Returns the message with the puppet's functions; null: no puppet. Allocates.
+/// Returns the message with the puppet's functions, or with fingertips' masks; null: neither.
+/// Allocates.
 std::vector<std::byte> message_of(std::uint32_t number, const puppet::Rig* rig);
 /// Returns the message with the clay's contacts and volume. Allocates.
 std::vector<std::byte> clay_message(const flow::Frame& frame);

@@ -114,6 +114,7 @@ public:
   std::size_t undoable = 0;
   // Of the latest puppet message.
   std::uint32_t puppet = 0;
+  std::vector<std::array<float, 4>> masks;                    ///< x, y, z, radius
   std::vector<std::pair<std::string, std::string>> functions; ///< name, and signal
   // Of the latest messages.
   std::uint64_t number = 0; ///< the frame that vertices() is of; 0: none
@@ -217,6 +218,10 @@ private:
         for (auto left = in.take<std::uint8_t>(); left > 0; --left)
           *text += in.take<char>();
       }
+    masks.resize(in.take<std::uint32_t>());
+    for (auto& mask : masks)
+      for (float& number : mask)
+        number = in.take<float>();
   }
 
   void take_shape(Bytes& in) {

@@ -21,6 +21,8 @@ const form = new Form(ask, fetchPicture, words => panel.say(words))
 const mover = new HandMover(element('scene'), camera, () => scene && scene.shape && latest &&
   { hands: latest.hands, origin: scene.origin, pixelOf: place => scene.pixelOf(place) })
 
+panel.painter = new MaskPainter(element('scene'), () => ({ scene, model: panel.model, puppet: panel.puppet, camera }), ask)
+
 function ask(request) {
   if (socket && socket.readyState === WebSocket.OPEN) socket.send(request)
 }
@@ -86,7 +88,7 @@ function open(model) {
     if (type === 3) panel.report(textIn(data))
     else if (type === 4) takeSettings(readSettings(data))
     else if (type === 5) panel.setHistory(readSteps(data))
-    else if (type === 7) panel.setPuppet(readPuppet(data))
+    else if (type === 7) takePuppet(readPuppet(data), model)
     else if (type === 6) takeWeights(readWeights(data), model)
     else if (type === 8) marks.clay = panel.clay = readClay(data)
     else if (type === 9) panel.setStates(readCommands(data))
@@ -116,6 +118,11 @@ function takeFigures(figures) {
   seen = text
   camera.see(view)
   camera.look(view.azimuth * Math.PI / 180, view.elevation * Math.PI / 180)
+}
+
+function takePuppet(puppet, model) {
+  panel.setPuppet(puppet)
+  if (scene) scene.shape.setHeld(heldBy(puppet, model))
 }
 
 function takeWeights(weights, model) {

@@ -3,6 +3,7 @@ layout(location = 0) in vec3 base_place;
 layout(location = 1) in vec3 base_normal;
 layout(location = 2) in vec2 given_texcoord;
 layout(location = 3) in vec3 given_tint;
+layout(location = 4) in float held; // by masks, which are dark
 uniform mat4 clip_of_world;
 uniform float scale;   // metres of the stage in a unit
 uniform vec3 offset;
@@ -18,7 +19,7 @@ void main() {
   place = scale * x + offset;
   normal = n;
   texcoord = given_texcoord;
-  tint = given_tint;
+  tint = given_tint * mix(1.0, 0.3, held);
   if (shadow.y > 0.0) place -= shadow * (max(place.y, 0.0) / shadow.y);
   gl_Position = clip_of_world * vec4(place, 1.0);
 }

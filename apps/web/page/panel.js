@@ -14,6 +14,7 @@ const OWN = {
   'frame all': panel => panel.camera.frame(),
   'fold panel': panel => panel.fold(),
   'search': panel => panel.search(),
+  'paint masks': panel => panel.paintMasks(),
   'list keys': panel => panel.help(),
 }
 const MAX_UNDOABLE = 48 // that the server lists
@@ -36,6 +37,8 @@ class Panel {
     this.shaping = new Shaping(this.ask)
     this.buttons = COMMANDS.filter(({ button }) => button).map(command => this.makeButton(command))
     this.boxes = new Map(Object.keys(shown).map(part => ['show ' + part, this.makeBox('parts', part, commandNamed('show ' + part))]))
+    this.paints = this.makeBox('group-more', 'paint masks', commandNamed('paint masks'))
+    this.buttons.find(({ isBox }) => isBox).line.after(this.paints.parentNode)
     for (const button of document.querySelectorAll('[data-own]')) {
       const command = commandNamed(button.dataset.own)
       button.setAttribute('aria-description', helpOf(command))
@@ -109,6 +112,7 @@ class Panel {
   }
   showStates() {
     const isPuppet = Boolean(this.update && this.update.isPuppet) // whose masks are edited in the window
+    this.paints.parentNode.hidden = isPuppet
     for (const { command, control, isBox, line } of this.buttons) {
       const { isOn, isHidden, refusal } = this.stateOf(command.name)
       line.hidden = isHidden || (isPuppet && command.name.startsWith('mask '))
@@ -120,6 +124,7 @@ class Panel {
     }
   }
   showParts() { for (const [name, box] of this.boxes) box.checked = this.shown[name.slice(5)] }
+  paintMasks() { this.paints.checked = this.painter.isOn = !this.painter.isOn }
   fold() {
     const folded = element('panel').classList.toggle('folded')
     document.querySelector('[data-own="fold panel"]').textContent = folded ? '+' : '\u2212'
@@ -220,7 +225,8 @@ class Panel {
       line.addEventListener('click', () => this.goTo(at))
       return line
     })
-    lines[history.undoable].scrollIntoView({ block: 'nearest' })
+    const list = element('history')
+    list.scrollTop = lines[history.undoable].offsetTop - list.offsetTop - list.clientHeight / 2 // the panel stays
   }
   goTo(at) {
     const { undoable } = this.history

@@ -43,6 +43,7 @@ class Shape {
     this.texcoords = this.seams.texcoords && makeBuffer(gl, gl.ARRAY_BUFFER, this.seams.texcoords, gl.STATIC_DRAW)
     const tints = this.seams.tints || (model.colours && forDrawn(model.colours, 3, this.seams))
     this.tints = tints && makeBuffer(gl, gl.ARRAY_BUFFER, tints, gl.STATIC_DRAW)
+    this.held = makeBuffer(gl, gl.ARRAY_BUFFER, new Uint8Array(this.seams.count), gl.DYNAMIC_DRAW) // by masks
     this.states = [this.makeState(), this.makeState()] // the first is the base
     this.feedback = gl.createTransformFeedback()
     this.texture = gl.createTexture()
@@ -63,6 +64,7 @@ class Shape {
     })
     this.share(2, this.texcoords, 2, gl.FLOAT, 0)
     this.share(3, this.tints, 3, gl.UNSIGNED_SHORT, 6)
+    this.share(4, this.held, 1, gl.UNSIGNED_BYTE, 1)
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners)
     gl.bindVertexArray(null)
     gl.bindBuffer(gl.ARRAY_BUFFER, null)
@@ -85,7 +87,7 @@ class Shape {
       gl.deleteVertexArray(array)
       buffers.forEach(buffer => gl.deleteBuffer(buffer))
     }
-    for (const buffer of [this.corners, this.texcoords, this.tints]) gl.deleteBuffer(buffer)
+    for (const buffer of [this.corners, this.texcoords, this.tints, this.held]) gl.deleteBuffer(buffer)
     this.bake.dispose()
     gl.deleteTransformFeedback(this.feedback)
     gl.deleteTexture(this.texture)
@@ -114,6 +116,14 @@ class Shape {
   takeShape(shape) {
     this.setBase(shape.places)
     this.number = shape.number
+  }
+
+  // held: of each vertex, 0 to 255.
+  setHeld(held) {
+    const { gl } = this
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.held)
+    gl.bufferSubData(gl.ARRAY_BUFFER, 0, forDrawn(held, 1, this.seams))
+    gl.bindBuffer(gl.ARRAY_BUFFER, null)
   }
 
   takeWeights(weights) {

@@ -117,7 +117,8 @@ function readWeights(buffer) {
 
 function readPuppet(buffer) {
   const from = new Reader(buffer, 2), count = from.u16(), number = from.u32(), text = () => from.text(from.u8())
-  return { number, functions: from.some(count, () => ({ name: text(), signal: text() })) }
+  const functions = from.some(count, () => ({ name: text(), signal: text() })), isInverted = from.view.getUint8(1) === 1
+  return { number, functions, isInverted, masks: from.some(from.u32(), () => ({ at: from.f32s(3), radius: from.f32() })) }
 }
 
 // Three of a quaternion's parts, 15 bits each; the largest one follows.
