@@ -26,14 +26,49 @@ Wish describe_bar(PageForm& form, Screen now, const std::string& file) {
 void PageRun::update(const RunStatus& status, Asks& asks) {
   form_.begin(server_.next_input());
   const bool is_modified = status.saving->is_modified(status.frame);
-  const Screen now = status.frame.function_count > 0 ? Screen::puppet : Screen::shaping;
+  follow_recording(status);
+  const Screen now = replay_                           ? Screen::timeline
+                     : status.frame.function_count > 0 ? Screen::puppet
+                                                       : Screen::shaping;
   const Wish wish = describe_bar(form_, now, file_ + (is_modified ? " *" : ""));
   if (is_wish(wish)) go(wish, status, asks);
   const bool is_saved = std::exchange(saves_, status.saving->saves()) != status.saving->saves();
   if (is_saved) session::keep_recent_file(status.saving->saved());
   if (saves_first_ && is_saved) leave(asks);
+  if (replay_) show_replay(status, asks);
   if (is_wish(waiting_)) ask(asks);
-  server_.set_form(form_.message("shaping"));
+  server_.set_form(form_.message(replay_ ? "timeline" : "shaping"));
+}
+
+void PageRun::follow_recording(const RunStatus& status) {
+  if (status.recorded == recorded_) return;
+  recorded_ = status.recorded;
+  session::keep_recent_file(recorded_);
+  if (replay_) replay_ = std::make_unique<PageReplay>(server_, recorded_);
+}
+
+void PageRun::show_replay(const RunStatus& status, Asks& asks) {
+  const auto wish = replay_->update(form_);
+  if (wish && !is_wish(*wish)) return;
+  if (wish) return go(*wish, status, asks);
+  server_.report(wish.error().message);
+  go_to(Screen::shaping, status, asks);
+}
+
+/// The run continues beside a replay, and its hands release the model meanwhile.
+void PageRun::go_to(Screen screen, const RunStatus& status, Asks& asks) {
+  const bool is_timeline = screen == Screen::timeline;
+  if (is_timeline == (replay_ != nullptr)) return;
+  if (!is_timeline) {
+    replay_.reset();
+    if (std::exchange(held_, false)) asks.emplace_back(flow::Request::grab);
+    return;
+  }
+  // The recording that ends is the one to be shown.
+  if (status.facts.recorded) asks.emplace_back(flow::SetRecording{false});
+  held_ = status.frame.held;
+  if (held_) asks.emplace_back(flow::Request::release);
+  replay_ = std::make_unique<PageReplay>(server_, status.facts.recorded ? "" : recorded_);
 }
 
 /// A save that fails keeps the user here.
@@ -42,6 +77,9 @@ void PageRun::report(const session::Report& message) {
 }
 
 void PageRun::go(const Wish& wish, const RunStatus& status, Asks& asks) {
+  if (const auto* const there = std::get_if<Go>(&wish))
+    if (there->screen == Screen::timeline || (there->screen == Screen::shaping && replay_))
+      return go_to(there->screen, status, asks);
   waiting_ = wish;
   if (!asks_to_save_ || !status.saving->is_modified(status.frame)) leave(asks);
 }

@@ -1,12 +1,14 @@
 #pragma once
-// A run of the studio on a page: the tabs over it, and a question before a changed shape is lost.
-// Main thread.
+// A run of the studio on a page: the tabs over it, a replay of its recording, and a question
+// before a changed shape is lost. Main thread.
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "session/observer.hpp"
 #include "studio/page_form.hpp"
+#include "studio/page_replay.hpp"
 #include "studio/wish.hpp"
 #include "web/server.hpp"
 
@@ -31,6 +33,9 @@ public:
   const Wish& left_for() const noexcept { return left_for_; }
 
 private:
+  void follow_recording(const session::RunStatus& status);
+  void go_to(Screen screen, const session::RunStatus& status, session::Asks& asks);
+  void show_replay(const session::RunStatus& status, session::Asks& asks);
   void go(const Wish& wish, const session::RunStatus& status, session::Asks& asks);
   void ask(session::Asks& asks);
   void leave(session::Asks& asks);
@@ -43,6 +48,9 @@ private:
   Wish waiting_; ///< where the user goes once it is settled what becomes of the shape
   Wish left_for_;
   bool saves_first_ = false;
+  std::string recorded_; ///< the file of the last recording
+  std::unique_ptr<PageReplay> replay_;
+  bool held_ = false;       ///< the hands held the model before the replay was shown
   std::uint32_t saves_ = 0; ///< the number of saves of the run so far
 };
 

@@ -15,6 +15,7 @@
 #include "studio/opened_files.hpp"
 #include "studio/page_figures.hpp"
 #include "studio/page_form.hpp"
+#include "studio/page_replay.hpp"
 #include "studio/page_run.hpp"
 #include "studio/start_choices.hpp"
 
@@ -54,6 +55,7 @@ public:
       std::this_thread::sleep_until(due);
     }
     start_.reset(); // closes its gloves, which the run opens
+    replay_.reset();
     form_.forget_images();
     server_->set_figures(PageFigures().message());
     return std::exchange(next_, std::nullopt);
@@ -82,10 +84,10 @@ public:
 private:
   void show_one() {
     form_.begin(server_->next_input());
-    follow(describe_bar(form_, Screen::start, {}));
+    follow(describe_bar(form_, replay_ ? Screen::timeline : Screen::start, {}));
     show_dialog();
-    show_start();
-    server_->set_form(form_.message("start"));
+    replay_ ? show_replay() : show_start();
+    server_->set_form(form_.message(replay_ ? "timeline" : "start"));
     if (form_.has_new_pictures()) server_->set_pictures(form_.pictures());
     if (const auto file = server_->take_file()) open_received(*file);
   }
@@ -107,6 +109,13 @@ private:
     }
   }
 
+  void show_replay() {
+    const auto wish = replay_->update(form_);
+    if (wish) return follow(*wish);
+    replay_.reset();
+    show_error(wish.error().message);
+  }
+
   void show_start() {
     if (!start_)
       start_ = std::make_unique<StartChoices>(StartOptions{options_.gloves, options_.calibration});
@@ -114,7 +123,8 @@ private:
     figures.add(start_->update());
     figures.look_by({0.0, 12.0}, 0.48, 0.4, 0.04);
     form_.part("ways");
-    follow(start_->describe_ways(form_, "Or drop one on this page: a model, a puppet."));
+    follow(start_->describe_ways(
+        form_, "Or drop one on this page: a model, a puppet, a recording, a timeline."));
     form_.part("hands");
     form_.title("Your hands", "");
     follow(start_->describe_hands(form_));
@@ -131,6 +141,8 @@ private:
   void go(const Go& there) {
     if (there.screen == Screen::shaping) next_ = Shape{};
     if (there.screen == Screen::puppet) next_ = Shape{{}, {}, "face"};
+    if (there.screen == Screen::timeline) begin_replay({});
+    if (there.screen == Screen::start) replay_.reset();
   }
 
   void open(const std::string& file) {
@@ -140,10 +152,19 @@ private:
     if (!fs::is_regular_file(file, error))
       return show_error(printable(file) + ": there is no such file on the machine of the gloves");
     session::keep_recent_file(file);
-    if (file.ends_with(".toml"))
+    if (opens_in_timeline(file))
+      begin_replay(file);
+    else if (file.ends_with(".toml"))
       next_ = Shape{{}, {}, file};
     else
       next_ = Shape{file};
+  }
+
+  void begin_replay(const std::string& file) {
+    start_.reset();
+    form_.forget_images();
+    server_->set_figures(PageFigures().message());
+    replay_ = std::make_unique<PageReplay>(*server_, file);
   }
 
   void open_received(const web::Server::File& file) {
@@ -158,6 +179,7 @@ private:
   StudioOptions options_;
   PageForm form_;
   std::unique_ptr<StartChoices> start_;
+  std::unique_ptr<PageReplay> replay_;
   std::unique_ptr<PageRun> view_;
   std::optional<Shape> next_;
   std::string error_; ///< shown until it is closed

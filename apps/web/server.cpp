@@ -64,13 +64,18 @@ std::string Server::foxglove_url() const {
 
 void Server::present(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model,
                      Pictures pictures) {
-  Work::Inbox& inbox = work_->inbox;
+  work_->present({std::move(stream), nullptr, std::move(pictures)}, std::move(model), false);
+}
+
+void Server::present_beside(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model,
+                            Pictures pictures) {
+  work_->present({std::move(stream), nullptr, std::move(pictures)}, std::move(model), true);
+}
+
+void Server::end_beside() {
   {
-    const std::scoped_lock lock(inbox.mutex);
-    const std::uint16_t loop = ++inbox.loops;
-    std::memcpy(model.data() + offsetof(ModelHead, loop), &loop, sizeof loop);
-    inbox.next = Work::Presented{std::move(stream), shared_message(std::move(model)),
-                                 std::move(pictures), loop};
+    const std::scoped_lock lock(work_->inbox.mutex);
+    work_->inbox.beside = Work::Presented{};
   }
   work_->wake();
 }
@@ -201,6 +206,17 @@ Server::Work::~Work() {
   thread_.join();
 }
 
+void Server::Work::present(Presented next, std::vector<std::byte> model, bool is_beside) {
+  {
+    const std::scoped_lock lock(inbox.mutex);
+    next.loop = ++inbox.loops;
+    std::memcpy(model.data() + offsetof(ModelHead, loop), &next.loop, sizeof next.loop);
+    next.model = shared_message(std::move(model));
+    (is_beside ? inbox.beside : inbox.next) = std::move(next);
+  }
+  wake();
+}
+
 void Server::Work::wake() noexcept {
   const std::uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = ::write(waker_.get(), &one, sizeof one);
@@ -280,19 +296,23 @@ void Server::Work::wait() {
 }
 
 void Server::Work::take_presented() {
-  std::optional<Presented> next;
+  std::optional<Presented> next, beside;
   {
     const std::scoped_lock lock(inbox.mutex);
     next = std::exchange(inbox.next, std::nullopt);
+    beside = std::exchange(inbox.beside, std::nullopt);
     if (auto pictures = std::exchange(inbox.pictures, std::nullopt))
       (next ? *next : presented_).pictures = *std::move(pictures);
   }
-  if (!next) return;
+  if (next) loop_ = *std::move(next);
+  if (beside) beside_ = *std::move(beside);
+  const Presented& shown = beside_.stream ? beside_ : loop_;
+  if (shown.loop == presented_.loop) return;
   if (presented_.stream) {
     presented_.stream->set_active(false);
     presented_.stream->set_hands_active(false);
   }
-  presented_ = *std::move(next);
+  presented_ = shown;
   begin_foxglove(HostClock::now());
   for (Connection& connection : connections_)
     if (connection.stage() == Connection::Stage::socket)

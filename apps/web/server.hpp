@@ -123,6 +123,11 @@ public:
   /// Wait-free.
   ServerCounters counters() const noexcept;
 
+  /// Serves another model and its frames in place of the loop's, until end_beside(); clients are
+  /// closed with code 1012 by both. The loop continues meanwhile, and may be replaced.
+  void present_beside(std::shared_ptr<FrameStream> stream, std::vector<std::byte> model,
+                      Pictures pictures);
+  void end_beside();
   /// Serves an empty model without frames, for a form and figures.
   void present_nothing();
 

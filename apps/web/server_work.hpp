@@ -29,7 +29,17 @@ public:
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
+  /// The served loop. Connections share its model while they send it.
+  struct Presented {
+    std::shared_ptr<FrameStream> stream;
+    SharedBytes model;
+    Pictures pictures;
+    std::uint16_t loop = 0; ///< the loop's number within the run, in model and shape messages
+  };
+
   void wake() noexcept;
+  /// Presents a loop, whose id this sets, or with `is_beside` something in its place.
+  void present(Presented next, std::vector<std::byte> model, bool is_beside);
   void report(std::string message);
 
   const Endpoint endpoint;
@@ -42,14 +52,6 @@ public:
         update_bytes{0}, shapes{0}, shape_bytes{0}, weights{0}, skipped{0};
   } counts;
 
-  /// The served loop. Connections share its model while they send it.
-  struct Presented {
-    std::shared_ptr<FrameStream> stream;
-    SharedBytes model;
-    Pictures pictures;
-    std::uint16_t loop = 0; ///< the loop's number within the run, in model and shape messages
-  };
-
   struct Weights {
     std::uint64_t number = 0;
     SharedBytes message;
@@ -57,8 +59,9 @@ public:
 
   /// Data from other threads for the server's thread.
   struct Inbox {
-    std::mutex mutex;              ///< guards the other members
-    std::optional<Presented> next; ///< set by present(), not taken yet
+    std::mutex mutex;                ///< guards the other members
+    std::optional<Presented> next;   ///< set by present(), not taken yet
+    std::optional<Presented> beside; ///< set by present_beside(), not taken yet
     std::uint16_t loops = 0;
     std::string report;    ///< the newest report; empty: already sent
     HostTime next_marks{}; ///< the earliest time of the next message about clay or a wire
@@ -108,7 +111,8 @@ private:
 
   const ServerLimits limits_;
   UniqueFd listener_, waker_;
-  Presented presented_;
+  Presented loop_, beside_;           ///< beside_ has no stream if there is none
+  Presented presented_;               ///< the one of the two that clients get
   std::list<Connection> connections_; ///< oldest first
   std::vector<pollfd> polled_;
   std::vector<Record> records_;

@@ -1,3 +1,5 @@
+#include <cstring>
+
 #include <doctest/doctest.h>
 
 #include "served.hpp"
@@ -227,6 +229,34 @@ TEST_SUITE("server") {
     REQUIRE(eventually([&] { return server->next_input().has_value(); }));
     client.send_text("form Pull");
     CHECK(client.close_code() == 1008);
+  }
+
+  TEST_CASE("clients follow what is shown beside the loop, and then the loop again") {
+    Served served(flow::Mode::type1);
+    served.begin();
+    const auto vertices_of_model = [&] {
+      WebClient client(*served.server);
+      const std::string model = client.get(client.with_token("/model")).body;
+      std::uint32_t vertices = 0;
+      if (model.size() > 16) std::memcpy(&vertices, model.data() + 12, sizeof vertices);
+      return vertices;
+    };
+    Viewer viewer(served);
+    CHECK(viewer.follow_until([&] { return viewer.follows(); }));
+    const auto vertices = vertices_of_model();
+    const deform::Mesh nothing;
+    const deform::BlockLayout layout(nothing.vertices);
+    served.server->present_beside(std::make_shared<FrameStream>(layout, flow::FrameCapacity{}),
+                                  model_message(layout, nothing, {}, {}), {});
+    CHECK(viewer.client.close_code() == 1012);
+    CHECK(vertices_of_model() == 0);
+    WebClient beside(*served.server);
+    REQUIRE(beside.open_socket() == 101);
+    served.server->end_beside();
+    CHECK(beside.close_code() == 1012);
+    CHECK(vertices_of_model() == vertices);
+    Viewer again(served);
+    CHECK(again.follow_until([&] { return again.follows() && again.updates > 10; }));
   }
 
   TEST_CASE("a file that does not come is not waited for") {

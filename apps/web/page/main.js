@@ -23,7 +23,10 @@ const mover = new HandMover(element('scene'), camera, () => scene && scene.shape
 
 panel.painter = new MaskPainter(element('scene'), () => ({ scene, model: panel.model, puppet: panel.puppet, camera }), ask)
 
+// A form is of another screen than the run.
+const isShaping = () => (document.body.dataset.screen || 'shaping') === 'shaping'
 function ask(request) {
+  if (!isShaping() && !request.startsWith('form\t')) return
   if (socket && socket.readyState === WebSocket.OPEN) socket.send(request)
 }
 

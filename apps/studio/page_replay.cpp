@@ -1,0 +1,145 @@
+#include "studio/page_replay.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <utility>
+
+#include <nendo/base/text.hpp>
+
+#include "cli/cli.hpp"
+#include "cli/model_files.hpp"
+#include "commands/commands.hpp"
+#include "web/model_message.hpp"
+
+namespace nendo::studio {
+namespace {
+
+using namespace std::chrono_literals;
+
+template <class T>
+bool is_ready(const std::future<T>& future) {
+  return future.valid() && future.wait_for(0s) == std::future_status::ready;
+}
+
+} // namespace
+
+Result<PageReplay::Opened> PageReplay::opened(const std::string& file) {
+  auto take = takes::read_take(file);
+  if (!take) return take.error();
+  if (!take->open)
+    return Error{Errc::bad_input, printable(file) + ": no recording, and no timeline"};
+  auto frames = take->open();
+  if (!frames) return frames.error();
+  return Opened{*std::move(take), *std::move(frames)};
+}
+
+PageReplay::PageReplay(web::Server& server, std::string file)
+    : server_(server), file_(std::move(file)) {
+  if (!file_.empty())
+    reading_ = std::async(std::launch::async, [name = file_] { return opened(name); });
+}
+
+PageReplay::~PageReplay() {
+  server_.end_beside();
+}
+
+/// Begins to show the frames' present version of the model.
+void PageReplay::present() {
+  takes::FrameSource& frames = *opened_->frames;
+  version_ = frames.frame().model;
+  const deform::BlockLayout& layout = frames.layout(version_);
+  stream_ = std::make_shared<web::FrameStream>(layout, flow::FrameCapacity{});
+  std::array<flow::HandInput, 2> hands;
+  hands[0].side = hands[0].first.side = Side::left;
+  hands[1].side = hands[1].first.side = Side::right;
+  server_.present_beside(stream_,
+                         web::model_message(layout, frames.model(version_), hands,
+                                            {cli::short_name(file_), frames.rate_hz(),
+                                             frames.frame().units_per_metre}),
+                         web::pictures_of(frames.model(version_)));
+}
+
+/// Each frame is a jump to its whole shape, because not all frames are shown.
+void PageReplay::show() {
+  const flow::Frame& frame = opened_->frames->frame();
+  if (!stream_ || frame.model != version_) present();
+  shown_.settings.mode = flow::Mode::type2; // whose base is the shape
+  shown_.hands = frame.hands;
+  shown_.units_per_metre = frame.units_per_metre;
+  shown_.held = false;
+  shown_.shape = frame.shape;
+  ++shown_.shape_jumps;
+}
+
+void PageReplay::go_to(double time_s) {
+  time_s_ = std::clamp(time_s, 0.0, opened_->take.duration_s);
+  if (rewinding_.valid() || time_s_ >= opened_->frames->time_s()) return;
+  rewinding_ = std::async(std::launch::async, opened_->take.open);
+}
+
+Result<void> PageReplay::play_on() {
+  if (is_ready(rewinding_)) {
+    auto frames = rewinding_.get();
+    if (!frames) return frames.error();
+    opened_->frames = *std::move(frames);
+    if (!opened_->frames->next()) return {};
+    show();
+  }
+  const HostTime now = HostClock::now();
+  const double elapsed_s = to_seconds(now - std::exchange(updated_, now));
+  if (rewinding_.valid()) return {};
+  if (plays_) time_s_ = std::min(time_s_ + elapsed_s, opened_->take.duration_s);
+  if (time_s_ >= opened_->take.duration_s) plays_ = false;
+  takes::FrameSource& frames = *opened_->frames;
+  const bool is_behind = frames.time_s() < time_s_;
+  while (frames.time_s() < time_s_ && HostClock::now() - now < 20ms && frames.next()) {
+  }
+  if (is_behind) show();
+  ++shown_.ticks_run;
+  stream_->show(shown_); // also while it pauses: a client may need the shape
+  return {};
+}
+
+void PageReplay::take_controls(PageForm& form) {
+  const commands::Row& play = commands::row_of(commands::EditCommand::play);
+  const commands::Row& to_begin = commands::row_of(commands::EditCommand::to_begin);
+  const double duration_s = opened_->take.duration_s;
+  form.lines_of(0);
+  if (form.button(to_begin.button, to_begin.help)) go_to(0.0);
+  if (form.button(plays_ ? play.button_on : play.button, play.help, Form::Look::chosen)) {
+    if (!plays_ && time_s_ >= duration_s) go_to(0.0);
+    plays_ = !plays_;
+  }
+  auto time_s = static_cast<float>(time_s_);
+  if (form.number("time", "The play head.", time_s, 0.0F, static_cast<float>(duration_s), "s"))
+    go_to(static_cast<double>(time_s));
+}
+
+Result<Wish> PageReplay::update(PageForm& form) {
+  form.part("timeline");
+  if (file_.empty()) {
+    form.text("Record while the hands shape: t begins, t again ends. The recording then opens "
+              "here.");
+    form.lines_of(0);
+    if (form.button("Open a recording or a timeline...", "")) return Wish{Open{}};
+    return Wish{};
+  }
+  if (is_ready(reading_)) {
+    auto opened = reading_.get();
+    if (!opened) return opened.error();
+    opened_ = *std::move(opened);
+    updated_ = HostClock::now();
+    if (!opened_->frames->next()) return Error{Errc::bad_input, file_ + ": has no frame"};
+    show();
+  }
+  if (!opened_) {
+    form.text("Reading " + printable(file_));
+    return Wish{};
+  }
+  if (const auto played = play_on(); !played) return played.error();
+  take_controls(form);
+  return Wish{};
+}
+
+} // namespace nendo::studio
