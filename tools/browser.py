@@ -123,6 +123,10 @@ class Browser:
     def press(self, command):
         self.click(f'[data-request="{command}"]')
 
+    def choose_file(self, selector, path):
+        found = self.ask("Runtime.evaluate", expression=f"document.querySelector({json.dumps(selector)})")["result"]["objectId"]
+        self.ask("DOM.setFileInputFiles", files=[str(path)], objectId=found)
+
     def mouse(self, kind, at, **more):
         self.ask("Input.dispatchMouseEvent", type=kind, x=at[0], y=at[1], **more)
 
@@ -181,11 +185,11 @@ def begin(nendo, *options, glove="sim:sculpt?seed=7"):
     return begin_any(nendo, "run", "--left", glove, "--right", glove, *options)
 
 
-def begin_any(*command):
+def begin_any(*command, **more):
     """A command that serves the page. Returns the program, and the page's address."""
     program = subprocess.Popen(
         [*command, "--web", "0"],
-        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, **more)
     line = program.stderr.readline()
     url = re.search(r"http://\S+", line) or sys.exit(f"no address in: {line}")
     wait_for_model(url[0].replace("/#", "/model?token="))

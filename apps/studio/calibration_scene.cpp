@@ -40,48 +40,6 @@ std::optional<std::size_t> finger_of(Joint joint) noexcept {
   return 1 + from_index / 5;
 }
 
-/// Returns where the joint of a sensor is.
-Vector3d place_of(Sensor sensor, const hand::HandPose& pose) {
-  const auto at = [&](Joint joint) -> Vector3d { return pose[joint].translation(); };
-  const auto between = [&](Joint one, Joint other) -> Vector3d {
-    return 0.5 * (at(one) + at(other));
-  };
-  // The web of two fingers, beyond their knuckles.
-  const auto web = [&](Joint one, Joint other) -> Vector3d {
-    return between(one, other) + pose[Joint::wrist].linear() * Vector3d(0.0, 0.0, -0.018);
-  };
-  switch (sensor) {
-  case Sensor::thumb_roll:
-    return at(Joint::thumb_metacarpal);
-  case Sensor::thumb_abduction:
-    return between(Joint::thumb_proximal, Joint::index_proximal);
-  case Sensor::thumb_mcp:
-    return at(Joint::thumb_proximal);
-  case Sensor::thumb_ip:
-    return at(Joint::thumb_distal);
-  case Sensor::index_middle_abduction:
-    return web(Joint::index_proximal, Joint::middle_proximal);
-  case Sensor::middle_ring_abduction:
-    return web(Joint::middle_proximal, Joint::ring_proximal);
-  case Sensor::ring_little_abduction:
-    return web(Joint::ring_proximal, Joint::little_proximal);
-  case Sensor::palm_arch:
-    return between(Joint::little_metacarpal, Joint::little_proximal);
-  case Sensor::wrist_pitch:
-  case Sensor::wrist_yaw: {
-    const double aside_m = sensor == Sensor::wrist_pitch ? -0.012 : 0.012;
-    return pose[Joint::wrist] * Vector3d(aside_m, 0.0, 0.0);
-  }
-  default:
-    break;
-  }
-  for (std::size_t finger = 0; finger < finger_sensors.size(); ++finger)
-    for (std::size_t joint = 0; joint < 3; ++joint)
-      if (finger_sensors[finger][joint] == sensor)
-        return at(joint_after(hand::metacarpals[finger + 1], joint + 1));
-  return at(Joint::palm);
-}
-
 /// As seen by the right hand's wearer: degrees from the view of the own palm towards the view from
 /// the thumb's side.
 struct OwnView {
@@ -126,6 +84,47 @@ OwnView own_view_of(PoseId pose) noexcept {
 
 } // namespace
 
+Vector3d place_of(Sensor sensor, const hand::HandPose& pose) {
+  const auto at = [&](Joint joint) -> Vector3d { return pose[joint].translation(); };
+  const auto between = [&](Joint one, Joint other) -> Vector3d {
+    return 0.5 * (at(one) + at(other));
+  };
+  // The web of two fingers, beyond their knuckles.
+  const auto web = [&](Joint one, Joint other) -> Vector3d {
+    return between(one, other) + pose[Joint::wrist].linear() * Vector3d(0.0, 0.0, -0.018);
+  };
+  switch (sensor) {
+  case Sensor::thumb_roll:
+    return at(Joint::thumb_metacarpal);
+  case Sensor::thumb_abduction:
+    return between(Joint::thumb_proximal, Joint::index_proximal);
+  case Sensor::thumb_mcp:
+    return at(Joint::thumb_proximal);
+  case Sensor::thumb_ip:
+    return at(Joint::thumb_distal);
+  case Sensor::index_middle_abduction:
+    return web(Joint::index_proximal, Joint::middle_proximal);
+  case Sensor::middle_ring_abduction:
+    return web(Joint::middle_proximal, Joint::ring_proximal);
+  case Sensor::ring_little_abduction:
+    return web(Joint::ring_proximal, Joint::little_proximal);
+  case Sensor::palm_arch:
+    return between(Joint::little_metacarpal, Joint::little_proximal);
+  case Sensor::wrist_pitch:
+  case Sensor::wrist_yaw: {
+    const double aside_m = sensor == Sensor::wrist_pitch ? -0.012 : 0.012;
+    return pose[Joint::wrist] * Vector3d(aside_m, 0.0, 0.0);
+  }
+  default:
+    break;
+  }
+  for (std::size_t finger = 0; finger < finger_sensors.size(); ++finger)
+    for (std::size_t joint = 0; joint < 3; ++joint)
+      if (finger_sensors[finger][joint] == sensor)
+        return at(joint_after(hand::metacarpals[finger + 1], joint + 1));
+  return at(Joint::palm);
+}
+
 Eigen::Isometry3d upright(const Vector3d& wrist_m) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() << -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, -1.0, 0.0;
@@ -156,70 +155,75 @@ void turn_towards(render::Camera& camera, const render::View& view, double elaps
   camera.view.elevation_deg += share * (view.elevation_deg - camera.view.elevation_deg);
 }
 
-Surface HandPainter::ghost(const hand::HandPose& pose) const {
+std::vector<Surface> HandPainter::draw(const ShownHand& hand) const {
   constexpr float shell_m = 0.0018F; // outside of a hand that is in the pose
-  Surface surface{{}, {}, {}, shell};
-  skin_.drape(pose, Vector3d::Zero(), surface);
-  for (std::size_t at = 0; at < surface.places.size(); ++at)
+  if (hand.look == ShownHand::Look::live) return live(hand);
+  const bool is_ghost = hand.look == ShownHand::Look::ghost;
+  std::vector<Surface> surfaces{{{}, {}, {}, is_ghost ? shell : glass}};
+  Surface& surface = surfaces[0];
+  skin_.drape(hand.pose, Vector3d::Zero(), surface);
+  for (std::size_t at = 0; is_ghost && at < surface.places.size(); ++at)
     surface.places[at] += shell_m * surface.normals[at];
-  return surface;
+  return surfaces;
 }
 
-std::vector<Surface> HandPainter::live(const hand::HandPose& pose, const Fingers& marked,
-                                       bool is_wrong) const {
+std::vector<Surface> HandPainter::live(const ShownHand& hand) const {
   Surface whole{{}, {}, {}, live_skin};
-  skin_.drape(pose, Vector3d::Zero(), whole);
+  skin_.drape(hand.pose, Vector3d::Zero(), whole);
   const auto is_marked = [&](std::span<const std::uint32_t, 3> corners) {
     const auto finger = finger_of(skin_.influences(corners[0])[0].joint);
-    return finger && marked[*finger];
+    return finger && hand.marked[*finger];
   };
   return {part_of(whole, live_skin, std::not_fn(is_marked)),
-          part_of(whole, is_wrong ? wrong_skin : right_skin, is_marked)};
+          part_of(whole, hand.is_wrong ? wrong_skin : right_skin, is_marked)};
 }
 
-std::vector<Surface> HandPainter::report(const hand::HandPose& pose,
-                                         const calibrate::FinishedCalibration& finished,
-                                         SensorMask sensors) const {
-  std::vector<Surface> surfaces{{{}, {}, {}, glass}};
-  skin_.drape(pose, Vector3d::Zero(), surfaces[0]);
+std::vector<Surface> HandPainter::balls(const std::vector<JointMark>& joints) {
+  std::vector<Surface> surfaces;
   for (const auto certainty : {calibrate::Certainty::sure, calibrate::Certainty::less_sure,
                                calibrate::Certainty::average, calibrate::Certainty::estimated}) {
     Surface balls{{}, {}, {}, Material{colour_of(certainty), 0.2F}};
-    for (const Sensor sensor : sensors)
-      if (calibrate::certainty_of(finished, sensor) == certainty)
-        add_sphere(balls, place_of(sensor, pose).cast<float>(), ball_radius_m, 14);
+    for (const JointMark& joint : joints)
+      if (joint.certainty == certainty)
+        add_sphere(balls, joint.place_m.cast<float>(), ball_radius_m, 14);
     if (!balls.is_empty()) surfaces.push_back(std::move(balls));
   }
   return surfaces;
 }
 
-std::optional<Sensor> sensor_at(const Eigen::Vector2d& pixel, const render::Camera& camera,
-                                render::Size size, const hand::HandPose& pose, SensorMask sensors) {
+const JointMark* mark_at(const Eigen::Vector2d& pixel, const render::Camera& camera,
+                         render::Size size, const std::vector<JointMark>& joints) {
   const Vector3d aside = static_cast<double>(ball_radius_m) * camera.axes().row(0).transpose();
-  std::optional<Sensor> nearest;
+  const JointMark* nearest = nullptr;
   double least = 1.0; // of a ball's radius
-  for (const Sensor sensor : sensors) {
-    const Vector3d place = place_of(sensor, pose);
-    const auto middle = viewer::pixel_of(camera, place, size);
-    const auto edge = viewer::pixel_of(camera, place + aside, size);
+  for (const JointMark& joint : joints) {
+    const auto middle = viewer::pixel_of(camera, joint.place_m, size);
+    const auto edge = viewer::pixel_of(camera, joint.place_m + aside, size);
     if (!middle || !edge) continue;
     const double share = (pixel - *middle).norm() / (*edge - *middle).norm();
     if (share >= least) continue;
     least = share;
-    nearest = sensor;
+    nearest = &joint;
   }
   return nearest;
 }
 
-Surface arrows(const hand::HandPose& live, const hand::HandPose& asked, const Fingers& marked) {
+Ways ways(const hand::HandPose& live, const hand::HandPose& asked, const Fingers& marked) {
   constexpr double visible_m = 0.015;
-  Surface surface{{}, {}, {}, arrow_colour};
+  Ways found;
   const auto from = live.fingertip_positions(), to = asked.fingertip_positions();
   for (std::size_t finger = 0; finger < marked.size(); ++finger) {
     const auto at = static_cast<Eigen::Index>(finger);
-    if (!marked[finger] || (to.col(at) - from.col(at)).norm() < visible_m) continue;
-    add_arrow(surface, from.col(at).cast<float>(), to.col(at).cast<float>(), arrow_width_m);
+    if (marked[finger] && (to.col(at) - from.col(at)).norm() >= visible_m)
+      found.emplace_back(from.col(at), to.col(at));
   }
+  return found;
+}
+
+Surface arrows(const Ways& ways) {
+  Surface surface{{}, {}, {}, arrow_colour};
+  for (const auto& [from, to] : ways)
+    add_arrow(surface, from.cast<float>(), to.cast<float>(), arrow_width_m);
   return surface;
 }
 

@@ -3,7 +3,7 @@
 // and the palm towards +z, so that the wearer's own view is a turn about the vertical axis.
 
 #include <array>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include <nendo/hand/calibration_poses.hpp>
@@ -30,36 +30,52 @@ render::Camera camera_for(const render::View& view, double width_m, double aspec
 /// Turns the camera towards a direction, in about half a second, by the shorter way.
 void turn_towards(render::Camera& camera, const render::View& view, double elapsed_s) noexcept;
 
+/// A hand of a calibration's picture.
+struct ShownHand {
+  enum class Look : std::uint8_t {
+    live,
+    ghost, ///< a translucent shell, a little wider than the hand that is to be in it
+    glass  ///< translucent, for marks at its joints
+  };
+  hand::HandPose pose;
+  Look look = Look::live;
+  Fingers marked{};      ///< in the colour of a mistake, or of success
+  bool is_wrong = false; ///< it is a mistake
+};
+/// From the tips of fingers to where they should be, metres.
+using Ways = std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>;
+/// A joint that the glove measures.
+struct JointMark {
+  Sensor sensor;
+  Eigen::Vector3d place_m;
+  calibrate::Certainty certainty;
+};
+
+/// Returns where the joint of a sensor is.
+Eigen::Vector3d place_of(Sensor sensor, const hand::HandPose& pose);
+/// Returns the ways of marked fingertips that are long enough to see.
+Ways ways(const hand::HandPose& live, const hand::HandPose& asked, const Fingers& marked);
+
 /// Draws hands of one side. Construction takes some tens of milliseconds.
 class HandPainter {
 public:
-  explicit HandPainter(Side side) : side_(side), skin_(side) {}
+  explicit HandPainter(Side side) : skin_(side) {}
 
-  Side side() const noexcept { return side_; }
-  /// Returns a translucent shell around the pose, a little wider than the hand that is to be in it.
-  render::Surface ghost(const hand::HandPose& pose) const;
-  /// Returns the hand, with the marked fingers in the colour of a mistake, or of success.
-  std::vector<render::Surface> live(const hand::HandPose& pose, const Fingers& marked,
-                                    bool is_wrong) const;
-  /// Returns a translucent hand with a ball at each joint that the glove measures, coloured by
-  /// certainty.
-  std::vector<render::Surface> report(const hand::HandPose& pose,
-                                      const calibrate::FinishedCalibration& finished,
-                                      SensorMask sensors) const;
+  std::vector<render::Surface> draw(const ShownHand& hand) const;
+  /// Returns a ball at each joint, coloured by certainty.
+  static std::vector<render::Surface> balls(const std::vector<JointMark>& joints);
 
 private:
-  Side side_;
+  std::vector<render::Surface> live(const ShownHand& hand) const;
+
   render::HandSkin skin_;
 };
 
-/// Returns the sensor whose ball in HandPainter::report() is at those pixels.
-std::optional<Sensor> sensor_at(const Eigen::Vector2d& pixel, const render::Camera& camera,
-                                render::Size size, const hand::HandPose& pose, SensorMask sensors);
+/// Returns the mark whose ball is at those pixels; null: none.
+const JointMark* mark_at(const Eigen::Vector2d& pixel, const render::Camera& camera,
+                         render::Size size, const std::vector<JointMark>& joints);
 
-/// Returns arrows from the tips of the marked fingers to where they should be, if that is far
-/// enough to see.
-render::Surface arrows(const hand::HandPose& live, const hand::HandPose& asked,
-                       const Fingers& marked);
+render::Surface arrows(const Ways& ways);
 
 /// Returns the linear colour of a certainty.
 Eigen::Vector3f colour_of(calibrate::Certainty certainty) noexcept;

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include <Eigen/Core>
+
 #include "render/image.hpp"
 
 namespace nendo::studio {
@@ -14,7 +16,7 @@ namespace nendo::studio {
 class Form {
 public:
   enum class Tone : std::uint8_t { plain, faint, warning, success, title };
-  enum class Look : std::uint8_t { plain, chosen, grey };
+  enum class Look : std::uint8_t { plain, chosen, grey, done };
 
   virtual ~Form() = default;
 
@@ -23,6 +25,8 @@ public:
   virtual void lines_of(std::size_t count) = 0;
   virtual void separator() = 0;
   virtual void text(std::string_view words, Tone tone = Tone::plain) = 0;
+  /// A line of a legend: a disc in a linear colour, and words.
+  virtual void key(std::string_view words, const Eigen::Vector3f& colour) = 0;
   /// A title, and a faint note beside it.
   virtual void title(std::string_view words, std::string_view note) = 0;
 

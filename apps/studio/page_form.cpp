@@ -1,6 +1,7 @@
 #include "studio/page_form.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -10,6 +11,7 @@
 namespace nendo::studio {
 namespace {
 
+constexpr const char* look_names[] = {"", "chosen", "grey", "done"};
 constexpr const char* tone_names[] = {"", "faint", "warning", "success", "title"};
 
 } // namespace
@@ -69,6 +71,18 @@ void PageForm::text(std::string_view words, Tone tone) {
       {{"kind", "text"}, {"name", words}, {"look", tone_names[static_cast<std::size_t>(tone)]}});
 }
 
+void PageForm::key(std::string_view words, const Eigen::Vector3f& colour) {
+  parts_.back()["controls"].push_back(
+      {{"kind", "key"}, {"name", words}, {"colour", {colour.x(), colour.y(), colour.z()}}});
+}
+
+void PageForm::ring(double share, bool warns) {
+  parts_.back()["controls"].push_back({{"kind", "ring"},
+                                       {"name", ""},
+                                       {"value", std::round(100.0 * share)},
+                                       {"look", warns ? "warning" : "success"}});
+}
+
 void PageForm::title(std::string_view words, std::string_view note) {
   parts_.back()["controls"].push_back({{"kind", "title"}, {"name", words}, {"note", note}});
 }
@@ -80,7 +94,7 @@ void PageForm::file(std::string_view name, std::string_view help) {
 bool PageForm::button(std::string_view name, std::string_view help, Look look) {
   Json one = control("button", name, help);
   one["share"] = in_line_;
-  one["look"] = look == Look::grey ? "grey" : look == Look::chosen ? "chosen" : "";
+  one["look"] = look_names[static_cast<std::size_t>(look)];
   return changed(std::move(one)) && look != Look::grey;
 }
 

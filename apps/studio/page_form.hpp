@@ -22,6 +22,8 @@ public:
   void part(std::string_view name);
   /// A control with which the user chooses a file of the own device.
   void file(std::string_view name, std::string_view help);
+  /// A ring that fills, 0 to 1.
+  void ring(double share, bool warns);
   /// Returns the message. `screen`: the name of the screen.
   std::string message(std::string_view screen) const;
   /// Returns whether pictures() differs from what it was at the last call.
@@ -37,6 +39,7 @@ public:
   void lines_of(std::size_t count) override { in_line_ = count; }
   void separator() override;
   void text(std::string_view words, Tone tone = Tone::plain) override;
+  void key(std::string_view words, const Eigen::Vector3f& colour) override;
   void title(std::string_view words, std::string_view note) override;
   bool button(std::string_view name, std::string_view help, Look look = Look::plain) override;
   bool card(std::string_view name, const render::Image* picture, std::string_view help,

@@ -13,6 +13,7 @@
 #include "cli/model_files.hpp"
 #include "session/kept_state.hpp"
 #include "studio/opened_files.hpp"
+#include "studio/page_calibration.hpp"
 #include "studio/page_figures.hpp"
 #include "studio/page_form.hpp"
 #include "studio/page_replay.hpp"
@@ -24,6 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds picture_time(33);
+constexpr const char* screen_names[] = {"start", "shaping", "shaping", "timeline", "calibration"};
 
 /// Writes a file that came from a browser into the current folder, beside what runs save there.
 Result<std::string> store(const web::Server::File& file) {
@@ -54,9 +56,8 @@ public:
       show_one();
       std::this_thread::sleep_until(due);
     }
-    start_.reset(); // closes its gloves, which the run opens
-    replay_.reset();
-    form_.forget_images();
+    leave_screen();
+    if (next_) next_->learns_for = learns_for_;
     server_->set_figures(PageFigures().message());
     return std::exchange(next_, std::nullopt);
   }
@@ -64,6 +65,7 @@ public:
   session::Observer* observe(const session::RunOptions& run, bool asks_to_save) override {
     view_ = std::make_unique<PageRun>(*server_, cli::short_name(run.mesh), asks_to_save);
     has_run_ = true;
+    received_.clear(); // it can be read
     return view_.get();
   }
 
@@ -77,19 +79,33 @@ public:
   void show_error(const std::string& message) override {
     next_.reset();
     error_ = message;
+    std::error_code ignored;
+    if (!received_.empty()) fs::remove(std::exchange(received_, {}), ignored);
   }
 
   Result<void> end() override { return {}; }
 
 private:
   void show_one() {
+    const Screen now = replay_        ? Screen::timeline
+                       : calibration_ ? Screen::calibration
+                                      : Screen::start;
     form_.begin(server_->next_input());
-    follow(describe_bar(form_, replay_ ? Screen::timeline : Screen::start, {}));
+    follow(describe_bar(form_, now, {}));
     show_dialog();
-    replay_ ? show_replay() : show_start();
-    server_->set_form(form_.message(replay_ ? "timeline" : "start"));
+    PageFigures figures;
+    if (now == Screen::timeline) follow_shown(replay_->update(form_));
+    if (now == Screen::calibration) follow_shown(calibration_->update(form_, figures));
+    if (now == Screen::start) show_start(figures);
+    server_->set_figures(figures.message());
+    server_->set_form(form_.message(screen_names[static_cast<std::size_t>(now)]));
     if (form_.has_new_pictures()) server_->set_pictures(form_.pictures());
     if (const auto file = server_->take_file()) open_received(*file);
+  }
+
+  void follow_shown(const Result<Wish>& wish) {
+    if (!wish) show_error(wish.error().message);
+    follow(wish ? *wish : Wish{Go{Screen::start}});
   }
 
   void show_dialog() {
@@ -109,26 +125,39 @@ private:
     }
   }
 
-  void show_replay() {
-    const auto wish = replay_->update(form_);
-    if (wish) return follow(*wish);
-    replay_.reset();
-    show_error(wish.error().message);
-  }
-
-  void show_start() {
+  void show_start(PageFigures& figures) {
     if (!start_)
       start_ = std::make_unique<StartChoices>(StartOptions{options_.gloves, options_.calibration});
-    PageFigures figures;
     figures.add(start_->update());
     figures.look_by({0.0, 12.0}, 0.48, 0.4, 0.04);
     form_.part("ways");
-    follow(start_->describe_ways(
-        form_, "Or drop one on this page: a model, a puppet, a recording, a timeline."));
+    const Wish of_ways = start_->describe_ways(
+        form_, "Or drop one on this page: a model, a puppet, a recording, a timeline.");
     form_.part("hands");
     form_.title("Your hands", "");
-    follow(start_->describe_hands(form_));
-    server_->set_figures(figures.message());
+    const Wish of_hands = start_->describe_hands(form_);
+    follow(is_wish(of_hands) ? of_hands : of_ways);
+  }
+
+  /// Ends the screen that is shown; its gloves are closed.
+  void leave_screen() {
+    if (calibration_) learns_for_ = calibration_->learns_for();
+    start_.reset();
+    calibration_.reset();
+    replay_.reset();
+    form_.forget_images();
+  }
+
+  /// Calibrates this glove, or if none is named, the one that is there.
+  void calibrate(std::string glove) {
+    for (const std::string& named : options_.gloves)
+      if (glove.empty()) glove = named;
+    if (glove.empty() && start_) glove = start_->found_glove();
+    leave_screen();
+    if (glove.empty())
+      return show_error("No glove is here to calibrate. Plug one in, and choose Calibrate beside "
+                        "its hand.");
+    calibration_ = std::make_unique<PageCalibration>(glove);
   }
 
   void follow(const Wish& wish) {
@@ -142,7 +171,8 @@ private:
     if (there.screen == Screen::shaping) next_ = Shape{};
     if (there.screen == Screen::puppet) next_ = Shape{{}, {}, "face"};
     if (there.screen == Screen::timeline) begin_replay({});
-    if (there.screen == Screen::start) replay_.reset();
+    if (there.screen == Screen::calibration) calibrate(there.glove);
+    if (there.screen == Screen::start) leave_screen();
   }
 
   void open(const std::string& file) {
@@ -161,18 +191,15 @@ private:
   }
 
   void begin_replay(const std::string& file) {
-    start_.reset();
-    form_.forget_images();
-    server_->set_figures(PageFigures().message());
+    leave_screen();
     replay_ = std::make_unique<PageReplay>(*server_, file);
   }
 
   void open_received(const web::Server::File& file) {
     const auto stored = store(file);
-    if (stored)
-      open(*stored);
-    else
-      show_error(stored.error().message);
+    if (!stored) return show_error(stored.error().message);
+    received_ = *stored;
+    open(*stored);
   }
 
   std::shared_ptr<web::Server> server_;
@@ -180,9 +207,12 @@ private:
   PageForm form_;
   std::unique_ptr<StartChoices> start_;
   std::unique_ptr<PageReplay> replay_;
+  std::unique_ptr<PageCalibration> calibration_;
   std::unique_ptr<PageRun> view_;
   std::optional<Shape> next_;
-  std::string error_; ///< shown until it is closed
+  std::string learns_for_; ///< as in Shape
+  std::string error_;      ///< shown until it is closed
+  std::string received_;   ///< a stored file that has not been read yet; empty: none
   bool is_opening_ = false;
   std::string file_;    ///< the name that is typed
   bool has_run_ = true; ///< the server has another loop

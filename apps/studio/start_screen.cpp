@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include "viewer/theme.hpp"
+#include "viewer/widgets.hpp"
 
 namespace nendo::studio {
 
@@ -33,19 +34,14 @@ Wish StartScreen::show(viewer::SceneWindow& window) {
   window.move_camera();
   const float gap = em(gap_em), top = window.above_px() + gap;
   const float width = panel_part * all.x - gap, left = width + 2.0F * gap;
-  ImGui::SetNextWindowPos({gap, top});
-  ImGui::SetNextWindowSizeConstraints({width, 0.0F}, {width, all.y - top - gap});
-  constexpr ImGuiWindowFlags flags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoNav |
-                                     ImGuiWindowFlags_NoFocusOnAppearing;
-  ImGui::Begin("start", nullptr, flags | ImGuiWindowFlags_NoTitleBar);
+  constexpr ImGuiWindowFlags flags = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoNav;
+  viewer::begin_pane("start", {gap, top}, {0.0F, 0.0F}, {width, all.y - top - gap},
+                     flags | ImGuiWindowFlags_NoTitleBar);
   Wish wish = choices_.describe_ways(
       ways_, "Or drop one on the window: a model, a puppet, a recording, a timeline.");
   ImGui::End();
-  ImGui::SetNextWindowPos({left, all.y - gap}, ImGuiCond_Always, {0.0F, 1.0F});
-  const float rest = all.x - left - gap;
-  ImGui::SetNextWindowSizeConstraints({rest, 0.0F}, {rest, (all.y - top) * 0.45F});
-  ImGui::Begin("Your hands", nullptr, flags);
+  viewer::begin_pane("Your hands", {left, all.y - gap}, {0.0F, 1.0F},
+                     {all.x - left - gap, (all.y - top) * 0.45F}, flags);
   const Wish of_hands = choices_.describe_hands(hands_);
   ImGui::End();
   window.end_picture();

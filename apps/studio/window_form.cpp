@@ -19,8 +19,7 @@ ImVec4 colour_of(Form::Tone tone) {
   case Form::Tone::warning:
     return viewer::warning();
   case Form::Tone::success:
-    return viewer::is_dark() ? ImVec4(0.45F, 0.80F, 0.50F, 1.0F)
-                             : ImVec4(0.10F, 0.48F, 0.18F, 1.0F);
+    return ImGui::ColorConvertU32ToFloat4(success_colour());
   default:
     return style.Colors[ImGuiCol_Text];
   }
@@ -31,6 +30,11 @@ void show_help(std::string_view help) {
 }
 
 } // namespace
+
+unsigned success_colour(float opacity) {
+  return ImGui::GetColorU32(viewer::is_dark() ? ImVec4(0.45F, 0.80F, 0.50F, opacity)
+                                              : ImVec4(0.10F, 0.48F, 0.18F, opacity));
+}
 
 void WindowForm::lines_of(std::size_t count) {
   in_line_ = count;
@@ -72,6 +76,17 @@ void WindowForm::text(std::string_view words, Tone tone) {
   viewer::note_control(words, "");
 }
 
+void WindowForm::key(std::string_view words, const Eigen::Vector3f& colour) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float radius = viewer::em(0.32F);
+  const Eigen::Vector3f seen = colour.array().pow(1.0F / 2.2F);
+  ImGui::GetWindowDrawList()->AddCircleFilled(
+      {at.x + radius, at.y + ImGui::GetTextLineHeight() / 2.0F}, radius,
+      ImGui::GetColorU32({seen.x(), seen.y(), seen.z(), 1.0F}));
+  ImGui::SetCursorScreenPos({at.x + viewer::em(1.0F), at.y});
+  text(words);
+}
+
 void WindowForm::title(std::string_view words, std::string_view note) {
   lines_of(in_line_);
   ImGui::TextUnformatted(words.data(), words.data() + words.size());
@@ -82,7 +97,9 @@ void WindowForm::title(std::string_view words, std::string_view note) {
 
 bool WindowForm::button(std::string_view name, std::string_view help, Look look) {
   const float width = next_width(name);
+  if (look == Look::done) ImGui::PushStyleColor(ImGuiCol_Button, success_colour(0.25F));
   const bool pressed = viewer::button(name, width, look != Look::grey, look == Look::chosen);
+  if (look == Look::done) ImGui::PopStyleColor();
   show_help(help);
   return pressed;
 }

@@ -9,11 +9,15 @@
 
 namespace nendo::studio {
 
+/// Returns the colour that marks success, as ImGui packs colours.
+unsigned success_colour(float opacity = 1.0F);
+
 class WindowForm final : public Form {
 public:
   void lines_of(std::size_t count) override;
   void separator() override;
   void text(std::string_view words, Tone tone = Tone::plain) override;
+  void key(std::string_view words, const Eigen::Vector3f& colour) override;
   void title(std::string_view words, std::string_view note) override;
   bool button(std::string_view name, std::string_view help, Look look = Look::plain) override;
   bool card(std::string_view name, const render::Image* picture, std::string_view help,

@@ -49,6 +49,15 @@ class Form {
     make('small', control, { textContent: note })
     return { control, base: '', show: ({ name }) => setText(words, name) }
   }
+  key(_, { colour }) {
+    const control = document.createElement('p'), disc = make('i', control), words = make('span', control)
+    disc.style.background = `rgb(${colour.map(part => Math.round(255 * part ** (1 / 2.2)))})`
+    return { control, base: '', show: ({ name }) => setText(words, name) }
+  }
+  ring() {
+    const control = document.createElement('div')
+    return { control, base: 'ring', show: ({ value }) => control.style.setProperty('--part', value + '%') }
+  }
   separator() { return { control: document.createElement('hr'), base: '', show() {} } }
   button(give, { picture }) {
     const control = document.createElement('button'), canvas = picture === undefined ? null : make('canvas', control, { width: 264, height: 198 })

@@ -39,7 +39,7 @@ class Panel {
     this.boxes = new Map(Object.keys(shown).map(part => ['show ' + part, this.makeBox('parts', part, commandNamed('show ' + part))]))
     this.paints = this.makeBox('group-more', 'paint masks', commandNamed('paint masks'))
     this.buttons.find(({ isBox }) => isBox).line.after(this.paints.parentNode)
-    for (const button of document.querySelectorAll('[data-own]')) {
+    for (const button of document.querySelectorAll('button[data-own]')) {
       const command = commandNamed(button.dataset.own)
       button.setAttribute('aria-description', helpOf(command))
       button.addEventListener('click', () => this.give(command))
@@ -62,6 +62,7 @@ class Panel {
     make('span', line, { textContent: text })
     line.setAttribute('aria-description', helpOf(command))
     const box = make('input', line, { type: 'checkbox' })
+    box.dataset.own = command.name
     box.addEventListener('click', event => {
       event.preventDefault() // it shows what has come of it
       this.give(command)
@@ -132,8 +133,8 @@ class Panel {
   }
   // What the panel covers of the page's width.
   covered() {
-    const ways = element('form-ways')
-    if (ways && !ways.hidden) return ways.getBoundingClientRect().right / innerWidth
+    const left = document.querySelector(':is(#form-ways, #form-course):not([hidden])')
+    if (left) return left.getBoundingClientRect().right / innerWidth
     const panel = element('panel')
     return panel.classList.contains('folded') ? 0 : Math.min(0.4, panel.getBoundingClientRect().right / innerWidth)
   }
