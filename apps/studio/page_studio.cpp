@@ -98,8 +98,8 @@ private:
     if (now == Screen::calibration) follow_shown(calibration_->update(form_, figures));
     if (now == Screen::start) show_start(figures);
     server_->set_figures(figures.message());
-    server_->set_form(form_.message(screen_names[static_cast<std::size_t>(now)]));
     if (form_.has_new_pictures()) server_->set_pictures(form_.pictures());
+    server_->set_form(form_.message(screen_names[static_cast<std::size_t>(now)]));
     if (const auto file = server_->take_file()) open_received(*file);
   }
 

@@ -1,5 +1,10 @@
-// Controls that the server describes (PROTOCOL.md, message 12): all are made here.
+// Controls that the server describes (PROTOCOL.md, message 12), and those of settings: all are made here.
 const MAX_FILE = 128 << 20 // bytes that the server takes
+function labelled(base, parts) {
+  const control = document.createElement('label'), words = make('span', control)
+  control.className = base
+  return { control, base, inputs: parts.map(([kind, values]) => make(kind, control, values)), label: name => setText(words, name) }
+}
 
 class Form {
   // fetchPicture: as Paint takes it.
@@ -76,40 +81,45 @@ class Form {
     this.pictures.delete(number) // the message was faster
     setTimeout(() => this.paint(canvas, number), 200)
   }
-  labelled(base, parts) {
-    const control = document.createElement('label'), words = make('span', control)
-    return { control, base, inputs: parts.map(([kind, values]) => make(kind, control, values)), label: name => setText(words, name) }
-  }
   check(give) {
-    const { inputs: [input], label, ...made } = this.labelled('box', [['input', { type: 'checkbox' }]])
-    input.addEventListener('change', () => give(input.checked))
+    const { inputs: [input], label, ...made } = labelled('box', [['input', { type: 'checkbox' }]])
+    input.addEventListener('input', () => give(input.checked))
     return { ...made, show: ({ name, value }) => { label(name); input.checked = value } }
   }
-  choice(give) {
-    const { inputs: [input], label, ...made } = this.labelled('field', [['select', {}]])
+  choice(give, { choices }) {
+    const { inputs: [input], label, ...made } = labelled('field', [['select', {}]])
+    input.append(...choices.map(choice => new Option(choice)))
     input.addEventListener('input', () => give(input.value))
     return { ...made, show: ({ name, value, choices }) => {
       label(name)
-      input.replaceChildren(...choices.map(choice => new Option(choice)))
+      choices.forEach((choice, at) => setText(input.options[at], choice))
       input.value = value
     } }
   }
-  number(give, { min, max, unit }) {
-    const { inputs, label, ...made } = this.labelled('field', ['range', 'number'].map(type => ['input', { type, min, max, step: 'any' }]))
+  // A slider and a field; with Ctrl, the wheel changes it as well.
+  number(give, { min, max, unit, step = 'any' }) {
+    const { inputs, label, ...made } = labelled('field', ['range', 'number'].map(type => ['input', { type, min, max, step }]))
+    const put = value => give(Math.min(max, Math.max(min, Number(value))))
     make('span', made.control, { className: 'unit', textContent: unit })
-    for (const input of inputs) input.addEventListener('input', () => give(input.value))
+    for (const input of inputs) input.addEventListener('input', () => put(input.value))
+    made.control.addEventListener('wheel', event => {
+      if (!event.ctrlKey) return
+      event.preventDefault()
+      put(Number(inputs[0].value) - Math.sign(event.deltaY) * (max - min) / 50)
+    }, { passive: false })
     return { ...made, show: ({ name, value }) => {
       label(name)
-      for (const input of inputs) if (input !== document.activeElement) input.value = Math.round(10 * value) / 10
+      inputs[1].ariaLabel = name
+      for (const input of inputs) if (!input.matches(input.type === 'range' ? ':active' : ':focus')) input.value = typeof value === 'number' ? Math.round(10 * value) / 10 : value
     } }
   }
   line(give) {
-    const { inputs: [input], label, ...made } = this.labelled('field', [['input', { type: 'text' }]])
+    const { inputs: [input], label, ...made } = labelled('field', [['input', { type: 'text' }]])
     input.addEventListener('input', () => give(input.value))
     return { ...made, show: ({ name, value }) => { label(name); if (input !== document.activeElement) input.value = value } }
   }
   file() {
-    const { inputs: [input], label, ...made } = this.labelled('file', [['input', { type: 'file' }]])
+    const { inputs: [input], label, ...made } = labelled('file', [['input', { type: 'file' }]])
     input.addEventListener('change', () => this.open(input.files[0]))
     return { ...made, show: ({ name }) => label(name) }
   }

@@ -20,49 +20,29 @@ class Shaping {
       else if (name !== 'mode') this.add(name, setting)
   }
   helpOf({ help, command }) { return command ? helpOf({ ...commandNamed(command), help }) : help }
-  line(words, { help, command }, isBox) {
-    const line = make('label', element('tool'), { className: isBox ? 'box' : 'field' })
-    line.setAttribute('aria-description', this.helpOf({ help, command }))
-    return { line, words: make('span', line, { textContent: words }) }
-  }
   addFingers(name, setting) {
     FINGERS.forEach((_, finger) => this.add(name, setting, finger))
-    const { line } = this.line(`one ${setting.label} for all fingers`, setting, true)
-    const one = make('input', line, { type: 'checkbox', id: 'one-' + name, checked: true })
-    const control = { name, setting, line, one }
-    one.addEventListener('change', () => this.wanted && this.choose(this.controls.find(other => other.name === name), this.wanted[name][0]))
-    this.controls.push(control)
+    const show = () => this.wanted && this.choose(this.controls.find(other => other.name === name), this.wanted[name][0])
+    const one = this.append('check', show, setting, 'one-' + name)
+    one.show({ name: `one ${setting.label} for all fingers`, value: true })
+    this.controls.push({ name, setting, line: one.control, one: element('one-' + name) })
   }
-  // Of a setting, or of a finger's share of it. A switch or one of two choices is a box; numbers have a slider and a field.
+  append(kind, give, { help, command, ...values }, id) {
+    const made = Form.prototype[kind](give, values)
+    made.control.setAttribute('aria-description', this.helpOf({ help, command }))
+    made.control.children[1].id = id
+    element('tool').append(made.control)
+    return made
+  }
+  // Of a setting, or of a finger's share of it. A switch or one of two choices is a box.
   add(name, setting, finger = null) {
-    const choices = setting.choices ? choicesOf(setting) : [], isBox = choices.length === 2
-    const { line, words } = this.line(setting.label, setting, isBox)
-    const control = { name, setting, finger, line, words, inputs: [], scale: setting.unit === 'm' ? 100 : 1, choices, isBox }
-    const addInput = (kind, values, read) => {
-      const input = make(kind, line, values)
-      input.addEventListener('input', () => this.wanted && this.choose(control, read(input)))
-      control.inputs.push(input)
-      return input
-    }
-    const id = finger === null ? name : `${name}-${FINGERS[finger]}`
-    if (isBox) addInput('input', { type: 'checkbox', id }, input => choices[input.checked ? 1 : 0])
-    else if (choices.length > 0) addInput('select', { id }, ({ value }) => value).append(...choices.map(choice => new Option(choice)))
-    else this.addNumber(control, addInput, id)
-    this.controls.push(control)
-  }
-  addNumber(control, addInput, id) {
-    const { setting: { min, max, label }, scale, line } = control, most = Math.min(max, LARGEST) * scale
-    const limits = { min: min * scale, max: most, step: scale > 1 ? 0.1 : 0.01 }
-    const read = ({ value }) => Math.min(most, Math.max(limits.min, Number(value))) / scale
-    addInput('input', { ...limits, type: 'range', id }, read)
-    addInput('input', { ...limits, type: 'number', ariaLabel: label }, read)
-    make('span', line, { className: 'unit', textContent: scale > 1 ? 'cm' : '' })
-    line.addEventListener('wheel', event => {
-      if (!event.ctrlKey || !this.wanted) return
-      event.preventDefault()
-      const value = Number(control.inputs[0].value) - Math.sign(event.deltaY) * (most - limits.min) / 50
-      this.choose(control, read({ value }))
-    }, { passive: false })
+    const choices = setting.choices ? choicesOf(setting) : [], isBox = choices.length === 2, scale = setting.unit === 'm' ? 100 : 1
+    const kind = isBox ? 'check' : choices.length > 0 ? 'choice' : 'number'
+    const control = { name, setting, finger, scale, choices, isBox }
+    const read = value => isBox ? choices[value ? 1 : 0] : choices.length > 0 ? value : value / scale
+    const values = { ...setting, choices, min: setting.min * scale, max: Math.min(setting.max, LARGEST) * scale, step: scale > 1 ? 0.1 : 0.01, unit: scale > 1 ? 'cm' : '' }
+    const made = this.append(kind, value => this.wanted && this.choose(control, read(value)), values, finger === null ? name : `${name}-${FINGERS[finger]}`)
+    this.controls.push(Object.assign(control, { line: made.control, set: made.show }))
   }
   isOne(name) { return element('one-' + name).checked }
 
@@ -113,12 +93,9 @@ class Shaping {
       if (!one) this.showValue(control)
     }
   }
-  showValue({ name, setting, finger, words, inputs, scale, choices, isBox }) {
-    const isOfFinger = finger !== null
-    if (isOfFinger) words.textContent = this.isOne(name) ? setting.label : FINGERS[finger]
-    const value = isOfFinger ? this.wanted[name][finger] : this.wanted[name]
-    if (isBox) inputs[0].checked = value === choices[1]
-    else if (choices.length > 0) inputs[0].value = value
-    else for (const input of inputs) if (input !== document.activeElement || input.type === 'range') input.value = (scale * value).toFixed(scale > 1 ? 1 : 2)
+  showValue({ name, setting: { label }, finger, set, scale, choices, isBox }) {
+    const isOfFinger = finger !== null, value = isOfFinger ? this.wanted[name][finger] : this.wanted[name]
+    const shown = isBox ? value === choices[1] : choices.length > 0 ? value : (scale * value).toFixed(scale > 1 ? 1 : 2)
+    set({ name: isOfFinger && !this.isOne(name) ? FINGERS[finger] : label, value: shown, choices })
   }
 }
