@@ -150,10 +150,10 @@ void add_run_options(cli::Command& command, RunArguments& options) {
       "--web", options.web,
       "[ADDR:]PORT at which a browser shows and controls the run; without ADDR, only a "
       "browser on this machine");
-  command.add_option(
-      "--out-puppet", options.out_puppet,
-      "Where the window saves an edited puppet, or the page masks, .toml; without it, the file that was "
-      "opened, or one in the current folder, named after the model");
+  command.add_option("--out-puppet", options.out_puppet,
+                     "Where the window saves an edited puppet, or the page masks, .toml; without "
+                     "it, the file that was "
+                     "opened, or one in the current folder, named after the model");
   command.add_option("--theme", options.view.theme, "The window's colours")
       .one_of({"light", "dark"});
   command.add_option("--screenshot", options.view.screenshot,
