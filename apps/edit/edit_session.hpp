@@ -47,6 +47,7 @@ public:
   /// Returns the available shape that is nearest to the play head.
   timeline::ShapeCache::Found shape() const { return cache_.nearest(head_.time_s()); }
   timeline::ShapeCache::Progress progress() const { return cache_.progress(); }
+  void hurry_pictures() noexcept { pictures_.hurry(); } ///< as ShapePictures::hurry()
   /// Returns whether the last view had all pictures that were asked for, of the latest shapes.
   bool has_all_pictures() const noexcept { return has_all_pictures_; }
 

@@ -1,6 +1,6 @@
 #include "edit/shape_pictures.hpp"
 
-#include <sched.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <array>
@@ -121,17 +121,24 @@ private:
 };
 
 ShapePictures::ShapePictures(double units_per_metre)
-    : painter_(std::make_unique<Painter>(units_per_metre)), worker_([this] { work(); }) {}
+    : painter_(std::make_unique<Painter>(units_per_metre)), worker_([this] { work(); }) {
+  const sched_param none{};
+  ::pthread_setschedparam(worker_.native_handle(), SCHED_IDLE, &none); // always permitted
+}
 
 ShapePictures::~ShapePictures() {
   ends_ = true;
   offered_.notify();
+  hurry();
   worker_.join();
 }
 
-void ShapePictures::work() {
+void ShapePictures::hurry() noexcept {
   const sched_param none{};
-  ::sched_setscheduler(0, SCHED_IDLE, &none); // of this thread; always permitted
+  ::pthread_setschedparam(worker_.native_handle(), SCHED_OTHER, &none);
+}
+
+void ShapePictures::work() {
   while (!ends_) {
     Job* job = nullptr;
     if (offer_.take(job)) {

@@ -36,6 +36,8 @@ public:
   /// Returns the pictures of these shapes, and null for those that are null or not drawn yet, which
   /// are drawn next, in this order. Equal shapes have the same picture. Wait-free but for memory.
   std::vector<Picture> of(std::span<const Shape> shapes);
+  /// From now on, the thread competes with others: someone waits for the pictures.
+  void hurry() noexcept;
   /// Returns how many pictures were drawn so far.
   std::uint64_t drawn_count() const noexcept { return drawn_; }
 

@@ -29,11 +29,7 @@ Result<void> WindowEditing::show() {
   }
   if (found.shape) window_->follow(found.shape->shape);
   const viewer::TimelineView& view = session_.view();
-  // The strip's pictures starve where other programs want all processors.
-  constexpr double max_wait_s = 10.0;
-  if (!found.fresh || view.computing) shapes_at_ = now;
-  is_settled_ = shapes_at_ != now &&
-                (session_.has_all_pictures() || to_seconds(now - shapes_at_) > max_wait_s);
+  is_settled_ = found.fresh && !view.computing && session_.has_all_pictures();
   const viewer::EditActions actions = timeline_window_.show(view, session_.scene_frame());
   session_.handle(actions);
   quits_ = actions.quit;

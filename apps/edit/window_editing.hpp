@@ -36,7 +36,6 @@ private:
   EditSession session_;
   std::shared_ptr<const flow::ModelVersion> model_; ///< the one that the window shows
   std::optional<HostTime> before_;
-  HostTime shapes_at_ = HostClock::now(); ///< the last time at which shapes were missing
   bool is_settled_ = false;
   bool quits_ = false;
 };

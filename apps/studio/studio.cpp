@@ -81,6 +81,7 @@ private:
   bool is_complete() {
     if (screen_ == Screen::timeline) {
       edit::WindowEditing* const editing = timeline_.editing();
+      if (editing != nullptr && options_.view.frames > 0) editing->session().hurry_pictures();
       return editing != nullptr && editing->is_settled();
     }
     return start_ && start_->is_complete();

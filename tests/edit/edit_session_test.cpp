@@ -73,6 +73,7 @@ struct Edited {
 TEST_SUITE("edit_session") {
   TEST_CASE("pictures show the shapes of their times, and an edit replaces those that it changes") {
     Edited edited;
+    edited.session.hurry_pictures(); // also while other tests run
     std::vector<viewer::StripPicture> cells;
     for (double from_s = 0.0; from_s < edited.first.duration_s; from_s += 0.125)
       cells.push_back({from_s, std::min(from_s + 0.125, edited.first.duration_s)});
@@ -102,6 +103,7 @@ TEST_SUITE("edit_session") {
         wanted.push_back(shapes[static_cast<std::size_t>(
             std::lround((cell.from_s + cell.to_s) / 2.0 * edited.now().rate_hz))]);
       ShapePictures pictures(edited.now().units_per_metre);
+      pictures.hurry();
       auto found = pictures.of(wanted);
       for (; std::ranges::find(found, nullptr) != found.end(); found = pictures.of(wanted))
         std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -34,6 +34,7 @@ Shape stretched(const std::shared_ptr<const flow::ModelVersion>& model, double f
 }
 
 std::vector<Picture> wait_for(ShapePictures& pictures, const std::vector<Shape>& shapes) {
+  pictures.hurry(); // also while other tests run
   for (;;) {
     auto found = pictures.of(shapes);
     if (std::ranges::count(found, nullptr) == std::ranges::count(shapes, nullptr)) return found;
@@ -97,6 +98,7 @@ TEST_SUITE("shape_pictures") {
     std::vector<Shape> shapes;
     for (int at = 0; at < 4; ++at)
       shapes.push_back(stretched(model, 1.0 + 0.1 * at));
+    pictures.hurry();
     const test::Restraint restraint;
     CHECK(std::ranges::count(pictures.of(shapes), nullptr) == 4);
     while (std::ranges::count(pictures.of(shapes), nullptr) > 0)
