@@ -90,7 +90,7 @@ class Panel {
   }
   press(event) {
     if (event.altKey || event.metaKey || element('search').open) return
-    if (event.target.matches('select, input[type=number]')) return // which have keys of their own
+    if (event.target.matches('select, input[type=number], input[type=text]')) return // which have keys of their own
     if (event.ctrlKey) return this.pressWithCtrl(event)
     if (event.repeat) return
     if (event.key === 'Home' && event.target.matches('input[type=range]')) return
