@@ -69,6 +69,7 @@ bool Connection::receive(HostTime now) {
 void Connection::begin_body(std::size_t head_bytes, std::size_t body_bytes, HostTime now) {
   incoming_.erase(0, head_bytes);
   body_bytes_ = body_bytes;
+  if (incoming_.size() > body_bytes) incoming_.resize(body_bytes); // what follows is no request
   const bool is_lost = peer_closed_ && incoming_.size() < body_bytes;
   stage_ = is_lost ? Stage::ended : Stage::body;
   stage_since_ = last_heard_ = now;

@@ -1,4 +1,7 @@
+#include <array>
 #include <cstring>
+#include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -229,6 +232,18 @@ TEST_SUITE("server") {
     REQUIRE(eventually([&] { return server->next_input().has_value(); }));
     client.send_text("form Pull");
     CHECK(client.close_code() == 1008);
+  }
+
+  TEST_CASE("a file is no longer than its request says") {
+    const auto server = open_server();
+    server->set_form("{}");
+    WebClient client(*server);
+    client.send("POST " + client.with_token("/open") +
+                "&name=a.obj HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 3\r\n\r\nv 0 0 0");
+    CHECK(client.answer().status == 200);
+    const auto file = server->take_file();
+    REQUIRE(file);
+    CHECK(file->bytes == "v 0");
   }
 
   TEST_CASE("clients follow what is shown beside the loop, and then the loop again") {
