@@ -213,7 +213,13 @@ void Server::Work::handle_input(Connection& connection, const std::string& text,
   auto input = parse_form_input(text);
   if (!input) return connection.close(CloseCode::policy, now, input.error().message);
   const std::scoped_lock lock(inbox.mutex);
-  if (inbox.facts[form_fact] && inbox.inputs.size() < max_inputs)
+  if (!inbox.facts[form_fact]) return;
+  // A slider sends values faster than forms take them, and only its last one counts.
+  const bool is_newer = !inbox.inputs.empty() && !input->value.empty() &&
+                        inbox.inputs.back().control == input->control;
+  if (is_newer)
+    inbox.inputs.back() = *std::move(input);
+  else if (inbox.inputs.size() < max_inputs)
     inbox.inputs.push_back(*std::move(input));
 }
 

@@ -246,6 +246,28 @@ TEST_SUITE("server") {
     CHECK(file->bytes == "v 0");
   }
 
+  TEST_CASE("of the values of a slider, the last one is not lost, and no click between them") {
+    const auto server = open_server();
+    server->present_nothing();
+    server->set_form("{}");
+    WebClient client(*server);
+    REQUIRE(client.open_socket() == 101);
+    for (int value = 0; value < 200; ++value)
+      client.send_text("form\ttime\t" + std::to_string(value));
+    client.send_text("form\tPlay\t");
+    client.send_text("form\tPlay\t");
+    client.send_text("form\ttime\tend");
+    std::vector<std::string> given;
+    REQUIRE(eventually([&] {
+      while (const auto input = server->next_input())
+        given.push_back(input->control + input->value);
+      return !given.empty() && given.back() == "timeend";
+    }));
+    REQUIRE(given.size() >= 4);
+    CHECK(std::vector(given.end() - 4, given.end()) ==
+          std::vector<std::string>{"time199", "Play", "Play", "timeend"});
+  }
+
   TEST_CASE("clients follow what is shown beside the loop, and then the loop again") {
     Served served(flow::Mode::type1);
     served.begin();
