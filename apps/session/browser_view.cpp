@@ -32,6 +32,8 @@ public:
     if (auto fine = check(layout); !fine) return fine;
     streams_.begin(stream_for(layout));
     server_->set_settings(placed_->loop->changes().settings());
+    while (server_->next_command()) { // those that came without a run
+    }
     pictures_ = web::pictures_of(start.model);
     server_->present(streams_.now(), message_for(layout, start.model), pictures_);
     update_weights();

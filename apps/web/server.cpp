@@ -213,6 +213,11 @@ void Server::Work::present(Presented next, std::vector<std::byte> model, bool is
     std::memcpy(model.data() + offsetof(ModelHead, loop), &next.loop, sizeof next.loop);
     next.model = shared_message(std::move(model));
     (is_beside ? inbox.beside : inbox.next) = std::move(next);
+    if (!is_beside) {
+      // Another run counts its steps and puppets from the beginning.
+      inbox.facts[history_fact] = inbox.facts[puppet_fact] = nullptr;
+      inbox.pictures.reset(); // of the loop before
+    }
   }
   wake();
 }
@@ -297,16 +302,18 @@ void Server::Work::wait() {
 
 void Server::Work::take_presented() {
   std::optional<Presented> next, beside;
+  std::optional<Pictures> pictures;
   {
     const std::scoped_lock lock(inbox.mutex);
     next = std::exchange(inbox.next, std::nullopt);
     beside = std::exchange(inbox.beside, std::nullopt);
-    if (auto pictures = std::exchange(inbox.pictures, std::nullopt))
-      (next ? *next : presented_).pictures = *std::move(pictures);
+    pictures = std::exchange(inbox.pictures, std::nullopt);
   }
   if (next) loop_ = *std::move(next);
   if (beside) beside_ = *std::move(beside);
+  if (pictures) loop_.pictures = *std::move(pictures);
   const Presented& shown = beside_.stream ? beside_ : loop_;
+  if (pictures) presented_.pictures = shown.pictures;
   if (shown.loop == presented_.loop) return;
   if (presented_.stream) {
     presented_.stream->set_active(false);
@@ -342,7 +349,8 @@ void Server::Work::send_facts(HostTime now) {
     facts = inbox.facts;
   }
   for (Connection& client : connections_) {
-    if (!client.is_page()) continue;
+    // One that lags behind gets the newest ones when its queue is empty.
+    if (!client.is_page() || !client.accepts_updates()) continue;
     for (std::size_t at = 0; at < facts.size(); ++at) {
       if (!facts[at] || client.sent_facts[at] == facts[at]) continue;
       client.sent_facts[at] = facts[at];

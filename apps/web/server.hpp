@@ -108,7 +108,7 @@ public:
   void set_form(std::string_view json);
   /// Sets the hands that clients show without a run (PROTOCOL.md, message 13).
   void set_figures(std::string_view json);
-  /// Replaces the pictures of the loop that is served.
+  /// Replaces the pictures of the loop; present_beside() has its own.
   void set_pictures(Pictures pictures);
   /// Returns the next input of the form, of all clients in order of arrival.
   std::optional<FormInput> next_input();

@@ -1,5 +1,8 @@
 // Tests of ServerLimits, and that no client slows the loop down.
 
+#include <string>
+#include <thread>
+
 #include <doctest/doctest.h>
 
 #include "served.hpp"
@@ -53,6 +56,30 @@ TEST_SUITE("server_limits") {
     CHECK(viewer.follow_until([&] { return viewer.shapes > shapes; }));
     CHECK(viewer.follow_until([&] { return viewer.number == viewer.newest; }));
     CHECK(viewer.skipped > 50);
+  }
+
+  TEST_CASE("a client that does not read is not sent each form, but the newest when it reads") {
+    ServerLimits limits = generous();
+    limits.max_queued_bytes = 8192;
+    const auto server = nendo::test::open_server(limits);
+    server->present_nothing();
+    WebClient client(*server, small_buffer);
+    REQUIRE(client.open_socket() == 101);
+    constexpr int last = 299;
+    for (int number = 0; number <= last; ++number) {
+      server->set_form(std::to_string(number) + std::string(4096, ' '));
+      std::this_thread::sleep_for(milliseconds(2)); // the server's thread has taken it
+    }
+    int forms = 0;
+    std::string newest;
+    while (!newest.starts_with(std::to_string(last))) {
+      const auto message = client.next();
+      REQUIRE(message);
+      ++forms;
+      newest.assign(reinterpret_cast<const char*>(message->payload.data()) + 4,
+                    message->payload.size() - 4);
+    }
+    CHECK(forms < last / 2);
   }
 
   TEST_CASE("of a puppet, a client that does not read misses frames, and then continues with the "

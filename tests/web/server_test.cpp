@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include <nendo/puppet/puppet_edit.hpp>
+
 #include "served.hpp"
 #include "web/server.hpp"
 
@@ -266,6 +268,49 @@ TEST_SUITE("server") {
     REQUIRE(given.size() >= 4);
     CHECK(std::vector(given.end() - 4, given.end()) ==
           std::vector<std::string>{"time199", "Play", "Play", "timeend"});
+  }
+
+  TEST_CASE("clients of a run get nothing about the puppet of the run before") {
+    const auto server = open_server();
+    const auto puppet_message = [&] {
+      WebClient client(*server);
+      REQUIRE(client.open_socket() == 101);
+      while (const auto message = client.next())
+        if (message->payload[0] == std::byte{7}) return message->payload;
+      return std::vector<std::byte>();
+    };
+    const std::array stroke{Eigen::Vector3d(1.0, 2.0, 3.0)};
+    const puppet::Rig nothing(puppet::Puppet{}, deform::Points(3, 0));
+    const auto masks = puppet::with_masks(nothing, stroke, 0.5);
+    REQUIRE(masks);
+    const puppet::Rig rig(*masks, deform::Points(3, 0));
+    const flow::Frame first; // of each run
+    server->present_nothing();
+    server->follow(first, &rig);
+    CHECK(puppet_message().size() == 8 + 4 + 16);
+    server->present_nothing();
+    server->follow(first, nullptr);
+    CHECK(puppet_message().size() == 8 + 4);
+  }
+
+  TEST_CASE("pictures are of the loop, also if they come while something is shown beside it") {
+    const auto server = open_server();
+    const auto status = [&] {
+      WebClient client(*server);
+      return client.get(client.with_token("/picture") + "&number=0").status;
+    };
+    const deform::Mesh nothing;
+    const deform::BlockLayout layout(nothing.vertices);
+    server->present_nothing();
+    server->present_beside(std::make_shared<FrameStream>(layout, flow::FrameCapacity{}),
+                           model_message(layout, nothing, {}, {}), {});
+    server->set_pictures({std::make_shared<const std::string>("\x89PNG")});
+    CHECK(status() == 404);
+    server->end_beside();
+    CHECK(status() == 200);
+    server->set_pictures({std::make_shared<const std::string>("\x89PNG")});
+    server->present_nothing();
+    CHECK(status() == 404);
   }
 
   TEST_CASE("clients follow what is shown beside the loop, and then the loop again") {
