@@ -2,7 +2,10 @@
 // The files that the studio opens, by the endings of their names.
 
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include <nendo/base/result.hpp>
 
 namespace nendo::studio {
 
@@ -10,5 +13,9 @@ namespace nendo::studio {
 std::vector<std::string> openable();
 /// Returns whether a file of this name is a recording or a timeline.
 bool opens_in_timeline(const std::string& file);
+/// Writes a file that came from a browser into the current folder, beside what runs save there, and
+/// returns its name: `name`, which has no path, with a number if something has that name already.
+/// Errors: bad_input (the studio opens no such file), failed.
+Result<std::string> store_sent(const std::string& name, std::string_view bytes);
 
 } // namespace nendo::studio

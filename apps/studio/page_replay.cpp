@@ -78,12 +78,16 @@ void PageReplay::go_to(double time_s) {
   rewinding_ = std::async(std::launch::async, opened_->take.open);
 }
 
+Error PageReplay::no_frame() const {
+  return {Errc::bad_input, printable(file_) + ": has no frame; record again"};
+}
+
 Result<void> PageReplay::play_on() {
   if (is_ready(rewinding_)) {
     auto frames = rewinding_.get();
     if (!frames) return frames.error();
     opened_->frames = *std::move(frames);
-    if (!opened_->frames->next()) return {};
+    if (!opened_->frames->next()) return no_frame();
     show();
   }
   const HostTime now = HostClock::now();
@@ -130,7 +134,7 @@ Result<Wish> PageReplay::update(PageForm& form) {
     if (!opened) return opened.error();
     opened_ = *std::move(opened);
     updated_ = HostClock::now();
-    if (!opened_->frames->next()) return Error{Errc::bad_input, file_ + ": has no frame"};
+    if (!opened_->frames->next()) return no_frame();
     show();
   }
   if (!opened_) {

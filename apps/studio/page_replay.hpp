@@ -37,6 +37,7 @@ private:
   static Result<Opened> opened(const std::string& file);
   void take_controls(PageForm& form);
   void go_to(double time_s);
+  Error no_frame() const;
   Result<void> play_on();
   void present();
   void show();

@@ -4,6 +4,7 @@
 
 #include "session/kept_state.hpp"
 #include "session/run_saving.hpp"
+#include "studio/opened_files.hpp"
 
 namespace nendo::studio {
 
@@ -32,6 +33,13 @@ void PageRun::update(const RunStatus& status, Asks& asks) {
                                                        : Screen::shaping;
   const Wish wish = describe_bar(form_, now, file_ + (is_modified ? " *" : ""));
   if (is_wish(wish)) go(wish, status, asks);
+  if (const auto file = server_.take_file()) {
+    const auto stored = store_sent(file->name, file->bytes);
+    if (stored)
+      go(Open{*stored}, status, asks);
+    else
+      server_.report(stored.error().message);
+  }
   const bool is_saved = std::exchange(saves_, status.saving->saves()) != status.saving->saves();
   if (is_saved) session::keep_recent_file(status.saving->saved());
   if (saves_first_ && is_saved) leave(asks);
@@ -93,7 +101,9 @@ void PageRun::ask(Asks& asks) {
     asks.emplace_back(flow::SaveShape{});
   }
   if (form_.button("Discard", "")) leave(asks);
-  if (form_.button("Stay", "")) waiting_ = {};
+  if (!form_.button("Stay", "")) return;
+  waiting_ = {};
+  saves_first_ = false;
 }
 
 void PageRun::leave(Asks& asks) {

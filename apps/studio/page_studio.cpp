@@ -1,12 +1,10 @@
 #include "studio/page_studio.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <thread>
 #include <utility>
 
-#include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 
 #include "cli/cli.hpp"
@@ -27,22 +25,6 @@ namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds picture_time(33);
 constexpr const char* screen_names[] = {"start", "shaping", "shaping", "timeline", "calibration"};
 
-/// Writes a file that came from a browser into the current folder, beside what runs save there.
-Result<std::string> store(const web::Server::File& file) {
-  const auto endings = openable();
-  if (std::ranges::none_of(endings,
-                           [&](const auto& ending) { return file.name.ends_with(ending); }))
-    return Error{Errc::bad_input, printable(file.name) +
-                                      ": the studio opens .obj, .ply, .stl, .gltf, .glb, "
-                                      ".puppet.toml and .nendo"};
-  fs::path place(file.name);
-  for (int number = 1; fs::exists(place); ++number)
-    place = fs::path(file.name).stem().string() + "-" + std::to_string(number) +
-            fs::path(file.name).extension().string();
-  if (const auto written = replace_file(place, file.bytes); !written) return written.error();
-  return place.string();
-}
-
 class PageStudio final : public Studio {
 public:
   PageStudio(std::shared_ptr<web::Server> server, StudioOptions options)
@@ -50,6 +32,7 @@ public:
 
   std::optional<Shape> choose() override {
     cli::install_stop_signals();
+    view_.reset(); // and a replay beside the run
     if (std::exchange(has_run_, false)) server_->present_nothing();
     while (!is_over_ && !next_ && !cli::stop_requested()) {
       const auto due = std::chrono::steady_clock::now() + picture_time;
@@ -86,13 +69,15 @@ public:
   Result<void> end() override { return {}; }
 
 private:
+  Screen screen() const {
+    return replay_ ? Screen::timeline : calibration_ ? Screen::calibration : Screen::start;
+  }
+
   void show_one() {
-    const Screen now = replay_        ? Screen::timeline
-                       : calibration_ ? Screen::calibration
-                                      : Screen::start;
     form_.begin(server_->next_input());
-    follow(describe_bar(form_, now, {}));
+    follow(describe_bar(form_, screen(), {}));
     show_dialog();
+    const Screen now = screen(); // the bar and the dialog may lead to another one
     PageFigures figures;
     if (now == Screen::timeline) follow_shown(replay_->update(form_));
     if (now == Screen::calibration) follow_shown(calibration_->update(form_, figures));
@@ -161,6 +146,7 @@ private:
   }
 
   void follow(const Wish& wish) {
+    if (is_wish(wish)) received_.clear(); // the user has seen it, and left it
     if (const auto* const shape = std::get_if<Shape>(&wish)) next_ = *shape;
     if (const auto* const there = std::get_if<Go>(&wish)) go(*there);
     if (const auto* const file = std::get_if<Open>(&wish)) open(file->file);
@@ -196,7 +182,8 @@ private:
   }
 
   void open_received(const web::Server::File& file) {
-    const auto stored = store(file);
+    received_.clear();
+    const auto stored = store_sent(file.name, file.bytes);
     if (!stored) return show_error(stored.error().message);
     received_ = *stored;
     open(*stored);
@@ -212,7 +199,7 @@ private:
   std::optional<Shape> next_;
   std::string learns_for_; ///< as in Shape
   std::string error_;      ///< shown until it is closed
-  std::string received_;   ///< a stored file that has not been read yet; empty: none
+  std::string received_;   ///< a file that was sent, removed if it cannot be read; empty: none
   bool is_opening_ = false;
   std::string file_;    ///< the name that is typed
   bool has_run_ = true; ///< the server has another loop

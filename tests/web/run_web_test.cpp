@@ -89,6 +89,64 @@ struct Browser {
   }
 };
 
+/// A studio on a page, which keeps its files in a folder, and a browser that shows it.
+struct Studio {
+  test::Program program;
+  Address address;
+  Browser browser;
+
+  explicit Studio(const fs::path& folder)
+      : program(started_in(folder)), address(address_of(program)), browser{address, {}, {}} {
+    REQUIRE(address.token.size() == 32);
+    browser.connect();
+  }
+  /// Waits for a form with these words; comes again after another model.
+  bool sees(const std::string& words) {
+    while (const auto frame = browser.client->next()) {
+      if (frame->opcode == 8) browser.connect();
+      const std::string text(reinterpret_cast<const char*>(frame->payload.data()),
+                             frame->payload.size());
+      if (text[0] == 12 && text.find(words) != std::string::npos) return true;
+    }
+    return false;
+  }
+  void press(const std::string& control, const std::string& value = {}) {
+    browser.client->send_text("form\t" + control + "\t" + value);
+  }
+  /// Sends a file, and returns the answer's status.
+  int send(const std::string& name, const std::string& bytes) const {
+    WebClient client(address.port, address.token);
+    client.send("POST " + client.with_token("/open") + "&name=" + name +
+                " HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: " + std::to_string(bytes.size()) +
+                "\r\n\r\n" + bytes);
+    return client.answer().status;
+  }
+  /// Waits for a run with this model.
+  void follows_run_of(const std::string& model) {
+    CHECK(browser.client->close_code() == 1012);
+    test::eventually([&] {
+      browser.connect();
+      return browser.follower->name == model;
+    });
+    REQUIRE(sees("Shaping"));
+  }
+
+private:
+  static test::Program started_in(const fs::path& folder) {
+    const fs::path before = fs::current_path();
+    fs::current_path(folder); // where the files go
+    ::setenv("XDG_STATE_HOME", folder.c_str(), 1);
+    struct Back {
+      fs::path before;
+      ~Back() {
+        ::unsetenv("XDG_STATE_HOME");
+        fs::current_path(before);
+      }
+    } const back{before};
+    return test::Program({"studio", "--web", "0", "--left", "sim:rest"});
+  }
+};
+
 } // namespace
 
 TEST_SUITE("run_web") {
@@ -275,55 +333,62 @@ TEST_SUITE("run_web") {
 
   TEST_CASE("a studio on a page begins runs, opens files that are sent to it, and refuses others") {
     const test::TemporaryFolder folder;
-    const fs::path before = fs::current_path();
-    fs::current_path(folder.path()); // where the files go
-    ::setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
-    test::Program program({"studio", "--web", "0", "--left", "sim:rest"});
-    ::unsetenv("XDG_STATE_HOME");
-    fs::current_path(before);
-    const Address address = address_of(program);
-    REQUIRE(address.token.size() == 32);
-    Browser browser{address, {}, {}};
-    const auto sees = [&](const std::string& words) {
-      while (const auto frame = browser.client->next()) {
-        if (frame->opcode == 8) return false;
-        const std::string text(reinterpret_cast<const char*>(frame->payload.data()),
-                               frame->payload.size());
-        if (text[0] == 12 && text.find(words) != std::string::npos) return true;
-      }
-      return false;
-    };
-    const auto send = [&](const std::string& name, const std::string& bytes) {
-      WebClient client(address.port, address.token);
-      client.send("POST " + client.with_token("/open") + "&name=" + name +
-                  " HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: " +
-                  std::to_string(bytes.size()) + "\r\n\r\n" + bytes);
-      return client.answer().status;
-    };
-    browser.connect();
-    REQUIRE(sees("With this model"));
-    CHECK(browser.follower->name.empty());
-    CHECK(send("hostile.obj", "f 1 2 3 4 5\nv nan nan") == 200);
-    REQUIRE(sees("hostile.obj"));
-    browser.client->send_text("form\tClose\t");
-    CHECK(send("program.sh", "rm") == 200);
-    REQUIRE(sees("program.sh: the studio opens"));
-    browser.client->send_text("form\tClose\t");
-    CHECK(send("scan.obj",
-               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n") == 200);
-    CHECK(browser.client->close_code() == 1012);
-    test::eventually([&] {
-      browser.connect();
-      return browser.follower->name == "scan.obj";
-    });
-    REQUIRE(sees("Shaping"));
-    browser.client->send_text("form\tStart\t");
-    browser.client->send_text("form\tDiscard\t"); // if the hands have moved the model
-    CHECK(browser.client->close_code() == 1012);
-    browser.connect();
-    REQUIRE(sees("With this model"));
-    program.signal(SIGTERM);
-    CHECK(program.wait().exit_code == 0);
+    Studio studio(folder.path());
+    REQUIRE(studio.sees("With this model"));
+    CHECK(studio.browser.follower->name.empty());
+    for (const auto& [tab, words] : {std::pair{"Timeline", "Record while the hands shape"},
+                                     {"Calibration", "your name"},
+                                     {"Timeline", "Record while the hands shape"},
+                                     {"Start", "With this model"}}) {
+      CAPTURE(words);
+      studio.press(tab);
+      REQUIRE(studio.sees(words));
+    }
+    CHECK(studio.send("hostile.obj", "f 1 2 3 4 5\nv nan nan") == 200);
+    REQUIRE(studio.sees("hostile.obj"));
+    CHECK_FALSE(fs::exists(folder.path() / "hostile.obj"));
+    studio.press("Close");
+    CHECK(studio.send("program.sh", "rm") == 200);
+    REQUIRE(studio.sees("program.sh: the studio opens"));
+    studio.press("Close");
+    const std::string scan =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    CHECK(studio.send("scan.obj", scan) == 200);
+    studio.follows_run_of("scan.obj");
+    CHECK(studio.send("during.obj", scan) == 200);
+    studio.press("Discard"); // if the hands have moved the model
+    studio.follows_run_of("during.obj");
+    studio.press("Start");
+    studio.press("Discard");
+    CHECK(studio.browser.client->close_code() == 1012);
+    studio.browser.connect();
+    REQUIRE(studio.sees("With this model"));
+    studio.program.signal(SIGTERM);
+    CHECK(studio.program.wait().exit_code == 0);
+  }
+
+  TEST_CASE("a recording that was sent to the studio stays when another file fails") {
+    const test::TemporaryFolder folder;
+    const auto take = folder.path() / "take.nendo";
+    REQUIRE(test::nendo({"run", "--left", "sim", "--duration", "0.5s", "--record", take.string(),
+                         "--out", (folder.path() / "out.ply").string()})
+                .exit_code == 0);
+    const std::string bytes = test::contents(take);
+    Studio studio(folder.path());
+    REQUIRE(studio.sees("With this model"));
+    CHECK(studio.send("sent.nendo", bytes) == 200);
+    REQUIRE(studio.sees("The play head."));
+    CHECK(studio.send("program.sh", "rm") == 200);
+    REQUIRE(studio.sees("program.sh: the studio opens"));
+    CHECK(fs::exists(folder.path() / "sent.nendo"));
+    studio.press("Close");
+    studio.press("Start");
+    REQUIRE(studio.sees("With this model"));
+    studio.press("Open a file...");
+    studio.press("file name", "nothing.obj");
+    studio.press("Open");
+    REQUIRE(studio.sees("nothing.obj: there is no such file"));
+    CHECK(fs::exists(folder.path() / "sent.nendo"));
   }
 
   TEST_CASE("an address that is none, or not this machine's, is one line before anything begins") {
