@@ -1,8 +1,8 @@
 #include "studio/opened_files.hpp"
 
-#include <algorithm>
 #include <filesystem>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 
@@ -15,25 +15,37 @@ std::vector<std::string> openable() {
 }
 
 bool opens_in_timeline(const std::string& file) {
-  return file.ends_with(".nendo") || timeline::is_timeline(file);
+  return ends_in(file, ".nendo") || timeline::is_timeline(file);
+}
+
+namespace {
+
+/// Returns the length of the ending of a file that the studio opens.
+Result<std::size_t> ending_in(const std::string& name) {
+  std::string all;
+  for (const std::string& ending : openable()) {
+    if (ends_in(name, ending)) return ending.size();
+    all += (all.empty() ? "" : ", ") + ending;
+  }
+  return Error{Errc::bad_input,
+               printable(name) + ": the studio opens no such file; it opens " + all};
+}
+
+} // namespace
+
+Result<void> check_openable(const std::string& name) {
+  const auto ending = ending_in(name);
+  return ending ? Result<void>() : ending.error();
 }
 
 Result<std::string> store_sent(const std::string& name, std::string_view bytes) {
-  const auto endings = openable();
-  const auto ending =
-      std::ranges::find_if(endings, [&](const auto& one) { return name.ends_with(one); });
-  if (ending == endings.end()) {
-    std::string all;
-    for (const std::string& one : endings)
-      all += (all.empty() ? "" : ", ") + one;
-    return Error{Errc::bad_input,
-                 printable(name) + ": the studio opens no such file; it opens " + all};
-  }
-  const std::string stem = name.substr(0, name.size() - ending->size());
+  const auto ending = ending_in(name);
+  if (!ending) return ending.error();
+  const std::size_t stem = name.size() - *ending;
   std::string place = name;
   std::error_code ignored;
   for (int number = 1; exists(std::filesystem::symlink_status(place, ignored)); ++number)
-    place = stem + "-" + std::to_string(number) + *ending;
+    place = name.substr(0, stem) + "-" + std::to_string(number) + name.substr(stem);
   if (const auto written = replace_file(place, bytes); !written) return written.error();
   return place;
 }

@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include <nendo/base/endings.hpp>
 #include <nendo/base/text.hpp>
 
 #include "cli/cli.hpp"
@@ -164,13 +165,15 @@ private:
   void open(const std::string& file) {
     is_opening_ = file.empty();
     if (file.empty()) return;
+    // Who uses the page from elsewhere shall learn nothing of other files.
+    if (const auto fine = check_openable(file); !fine) return show_error(fine.error().message);
     std::error_code error;
     if (!fs::is_regular_file(file, error))
       return show_error(printable(file) + ": there is no such file on the machine of the gloves");
     session::keep_recent_file(file);
     if (opens_in_timeline(file))
       begin_replay(file);
-    else if (file.ends_with(".toml"))
+    else if (ends_in(file, ".toml"))
       next_ = Shape{{}, {}, file};
     else
       next_ = Shape{file};

@@ -27,11 +27,14 @@ TEST_SUITE("opened_files") {
     CHECK(*store_sent("a.timeline.toml", "") == "a.timeline.toml");
     CHECK(*store_sent("a.timeline.toml", "") == "a-1.timeline.toml");
     CHECK(opens_in_timeline("a-1.timeline.toml"));
+    CHECK(*store_sent("Scan.OBJ", "") == "Scan.OBJ");
+    CHECK(*store_sent("Scan.OBJ", "") == "Scan-1.OBJ");
     CHECK(*store_sent("link.obj", "") == "link-1.obj");
     CHECK(*store_sent("loop.obj", "") == "loop-1.obj");
     CHECK(fs::is_symlink("link.obj"));
     for (const auto* wrong : {"program.sh", "obj", "a.toml", "a.obj.sh"}) {
       CAPTURE(wrong);
+      CHECK_FALSE(check_openable(wrong));
       CHECK_FALSE(store_sent(wrong, ""));
       CHECK_FALSE(fs::exists(wrong));
     }

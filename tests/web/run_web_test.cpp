@@ -353,6 +353,11 @@ TEST_SUITE("run_web") {
     studio.press("Close");
     const std::string scan =
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    studio.press("Open a file...");
+    studio.press("file name", "/etc/passwd");
+    studio.press("Open");
+    REQUIRE(studio.sees("/etc/passwd: the studio opens"));
+    studio.press("Close");
     CHECK(studio.send("scan.obj", scan) == 200);
     studio.follows_run_of("scan.obj");
     CHECK(studio.send("during.obj", scan) == 200);
