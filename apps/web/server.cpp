@@ -371,11 +371,12 @@ void Server::Work::accept_all(HostTime now) {
   }
 }
 
-// Clients with a WebSocket have shown the token, so they stay.
+// Clients with a WebSocket, or that send a file, have shown the token, so they stay.
 void Server::Work::drop_oldest() {
   const auto oldest =
       std::find_if(connections_.begin(), connections_.end(), [](const Connection& connection) {
-        return connection.stage() != Connection::Stage::socket;
+        return connection.stage() != Connection::Stage::socket &&
+               connection.stage() != Connection::Stage::body;
       });
   if (oldest == connections_.end())
     return; // the new one is answered with 503 if it asks for a WebSocket

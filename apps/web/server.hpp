@@ -24,7 +24,8 @@ namespace nendo::web {
 
 /// The limits for each client, hostile ones included.
 struct ServerLimits {
-  /// Open connections. A new one beyond this limit closes the oldest that is not a WebSocket.
+  /// Open connections. A new one beyond this limit closes the oldest that is not a WebSocket, and
+  /// sends no file.
   std::size_t max_connections = 32;
   std::size_t max_clients = 16; ///< open WebSockets; the next one is answered with 503
   /// Bytes queued for a client, without shapes. A client with more queued bytes misses frames until

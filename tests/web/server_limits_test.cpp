@@ -260,6 +260,29 @@ TEST_SUITE("server_limits") {
     CHECK(served.server->counters().clients == 3);
   }
 
+  TEST_CASE("connections without the token do not end one that sends a file") {
+    ServerLimits limits = generous();
+    limits.max_connections = 4;
+    const auto server = nendo::test::open_server(limits);
+    server->set_form("{}");
+    WebClient sender(*server);
+    sender.send("POST " + sender.with_token("/open") +
+                "&name=a.obj HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 2\r\n\r\nv");
+    const auto has_begun = [&] { // so another file is refused
+      WebClient other(*server);
+      other.send("POST " + other.with_token("/open") +
+                 "&name=b.obj HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 9\r\n\r\n");
+      return other.answer().status == 503;
+    };
+    REQUIRE(eventually(has_begun));
+    std::vector<std::unique_ptr<WebClient>> idle; // more than there are places
+    for (int n = 0; n < 20; ++n)
+      idle.push_back(std::make_unique<WebClient>(*server));
+    CHECK(WebClient(*server).get("/").status == 200);
+    sender.send("v");
+    CHECK(sender.answer().status == 200);
+  }
+
   TEST_CASE("ten slow and hostile clients do not touch the loop, nor another client") {
     ServerLimits limits;
     limits.max_queued_bytes = 16384;
