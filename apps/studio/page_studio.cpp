@@ -148,10 +148,21 @@ private:
 
   void follow(const Wish& wish) {
     if (is_wish(wish)) received_.clear(); // the user has seen it, and left it
-    if (const auto* const shape = std::get_if<Shape>(&wish)) next_ = *shape;
+    if (const auto* const shape = std::get_if<Shape>(&wish)) begin_run(*shape);
     if (const auto* const there = std::get_if<Go>(&wish)) go(*there);
     if (const auto* const file = std::get_if<Open>(&wish)) open(file->file);
     if (std::holds_alternative<Quit>(wish)) is_over_ = true;
+  }
+
+  /// A puppet that is new is made in the window.
+  void begin_run(const Shape& shape) {
+    std::error_code ignored;
+    const bool is_for_model = !shape.model.empty() && !shape.puppet.empty();
+    if (is_for_model && !fs::exists(shape.puppet, ignored))
+      return show_error(printable(fs::path(shape.model).filename().string()) +
+                        ": has no puppet yet; make one in the window of nendo studio, or choose "
+                        "Moai, Face or Spot");
+    next_ = shape;
   }
 
   void go(const Go& there) {

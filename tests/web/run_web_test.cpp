@@ -344,6 +344,11 @@ TEST_SUITE("run_web") {
       studio.press(tab);
       REQUIRE(studio.sees(words));
     }
+    studio.press("Head");
+    studio.press("Puppet#1"); // the first is the tab
+    REQUIRE(studio.sees("head.obj: has no puppet yet"));
+    studio.press("Close");
+    studio.press("Head"); // no more
     CHECK(studio.send("hostile.obj", "f 1 2 3 4 5\nv nan nan") == 200);
     REQUIRE(studio.sees("hostile.obj"));
     CHECK_FALSE(fs::exists(folder.path() / "hostile.obj"));
