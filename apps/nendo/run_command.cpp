@@ -64,7 +64,7 @@ void add_shape_options(cli::Command& command, RunArguments& options) {
   command.add_option(
       "--mask", run_options.mask_file,
       "A file of protected areas for fingertips: [[masks]] with at and radius, as in "
-      "a puppet's file; the window paints and saves them");
+      "a puppet's file; the window and the page paint and save them");
   command.add_option(
       "--wire", options.wire,
       "FROM:TO, e.g. 0.8s:2.5s: the index fingers draw a wire through the model between these "
@@ -150,10 +150,10 @@ void add_run_options(cli::Command& command, RunArguments& options) {
       "--web", options.web,
       "[ADDR:]PORT at which a browser shows and controls the run; without ADDR, only a "
       "browser on this machine");
-  command.add_option("--out-puppet", options.out_puppet,
-                     "Where the window saves an edited puppet, or the page masks, .toml; without "
-                     "it, the file that was "
-                     "opened, or one in the current folder, named after the model");
+  command.add_option(
+      "--out-puppet", options.out_puppet,
+      "Where the window saves an edited puppet, or the page masks, .toml; without it, the "
+      "file that was opened, or one in the current folder, named after the model");
   command.add_option("--theme", options.view.theme, "The window's colours")
       .one_of({"light", "dark"});
   command.add_option("--screenshot", options.view.screenshot,

@@ -1,5 +1,5 @@
 #pragma once
-// What the user wants to do next in the studio's window.
+// What the user wants to do next in the studio.
 
 #include <array>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace nendo::studio {
 
-/// The screens, each a tab at the window's top.
+/// The screens, each a tab at the top.
 enum class Screen : std::uint8_t { start, shaping, puppet, timeline, calibration };
 
 /// A tab of the bar.
