@@ -58,10 +58,7 @@ Result<void> check_out_puppet(const RunArguments& options) {
 Result<void> check_outputs(RunArguments& options) {
   const session::RunOptions& run = options.run;
   const session::ViewOptions& view = options.view;
-  if (!view.window && (view.frames > 0 || view.contact || !view.screenshot.empty() ||
-                       view.theme != session::ViewOptions{}.theme))
-    return Error{Errc::usage,
-                 "--frames, --screenshot, --contact and --theme: need the window; add --view"};
+  if (auto fine = check_view(options); !fine) return fine;
   const std::string& model = run.over ? run.over->take.setup.loop->mesh : run.mesh;
   if (auto fine = cli::check_place("--out", run.out, deform::mesh_endings); !fine) return fine;
   if (auto fine = cli::check_spares(model, "--out", run.out, options.force); !fine) return fine;
@@ -271,6 +268,15 @@ Result<void> choose_files(RunArguments& options) {
 }
 
 } // namespace
+
+Result<void> check_view(const RunArguments& options) {
+  const session::ViewOptions& view = options.view;
+  if (view.window || (view.frames == 0 && !view.contact && view.screenshot.empty() &&
+                      view.theme == session::ViewOptions{}.theme))
+    return {};
+  return Error{Errc::usage, "--frames, --screenshot, --contact and --theme: need the window; " +
+                                std::string(options.studio ? "leave out --web" : "add --view")};
+}
 
 Result<void> check(RunArguments& options) {
   options.run.mesh = cli::name_of_files(options.models);

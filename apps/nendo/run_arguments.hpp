@@ -51,6 +51,8 @@ struct RunArguments {
 /// Checks them, completes `run`, and reads the puppet, the masks and the take that they name.
 /// Errors: usage, and those of the files.
 Result<void> check(RunArguments& arguments);
+/// Error: usage, for options of a window that there is not.
+Result<void> check_view(const RunArguments& arguments);
 
 /// Reads the model, or that of the take to play over, which must be as it was recorded. Errors:
 /// those of deform::read_mesh(), takes::find_recorded_model() and session::take_over_settings();

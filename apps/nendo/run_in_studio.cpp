@@ -54,6 +54,7 @@ public:
 
   int run() {
     int code = 0;
+    if (const auto fine = check_view(first_); !fine) return cli::report(fine.error());
     if (first_.begin == Begin::with_run && !timeline_) {
       RunArguments arguments = first_;
       const auto done = run_one(arguments);

@@ -408,6 +408,9 @@ TEST_SUITE("run_web") {
     const auto elsewhere = test::nendo({"run", "--left", "sim", "--web", "192.0.2.1:8080"});
     CHECK(elsewhere.exit_code == 1);
     CHECK(test::is_one_line_about(elsewhere.err, "is not of this machine"));
+    const auto dark = test::nendo({"studio", "--web", "0", "--theme", "dark"});
+    CHECK(dark.exit_code == 2);
+    CHECK(test::is_one_line_about(dark.err, "leave out --web"));
   }
 }
 
