@@ -61,7 +61,7 @@ public:
       if (const auto* const row = std::get_if<const commands::Row*>(&*asked)) {
         const commands::Answer answer = commands::press(**row, status.situation(), pending_);
         if (answer.command) asks.emplace_back(*answer.command);
-        if (answer.refusal != nullptr) server_->report(answer.refusal);
+        if (answer.refusal != nullptr) server_->report(answer.refusal, true);
       } else if (const auto* const settings = std::get_if<web::NamedSettings>(&*asked)) {
         settings->apply_to(pending_.now);
         if (const auto change = pending_.ask()) asks.emplace_back(*change);
@@ -70,7 +70,7 @@ public:
       }
     }
   }
-  void report(const Report& message) override { server_->report(message.text); }
+  void report(const Report& message) override { server_->report(message.text, message.is_error); }
 
 private:
   Result<void> check(const deform::BlockLayout& layout) const {

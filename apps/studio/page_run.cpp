@@ -38,7 +38,7 @@ void PageRun::update(const RunStatus& status, Asks& asks) {
     if (stored)
       go(Open{*stored}, status, asks);
     else
-      server_.report(stored.error().message);
+      server_.report(stored.error().message, true);
   }
   const bool is_saved = std::exchange(saves_, status.saving->saves()) != status.saving->saves();
   if (is_saved) session::keep_recent_file(status.saving->saved());
@@ -59,7 +59,7 @@ void PageRun::show_replay(const RunStatus& status, Asks& asks) {
   const auto wish = replay_->update(form_);
   if (wish && !is_wish(*wish)) return;
   if (wish) return go(*wish, status, asks);
-  server_.report(wish.error().message);
+  server_.report(wish.error().message, true);
   go_to(Screen::shaping, status, asks);
 }
 

@@ -105,8 +105,8 @@ std::optional<ClientCommand> Server::next_command() noexcept {
   return command;
 }
 
-void Server::report(std::string message) {
-  work_->report(std::move(message));
+void Server::report(std::string message, bool is_error) {
+  work_->report(std::move(message), is_error);
 }
 
 template <class Make>
@@ -227,10 +227,11 @@ void Server::Work::wake() noexcept {
   [[maybe_unused]] const ssize_t written = ::write(waker_.get(), &one, sizeof one);
 }
 
-void Server::Work::report(std::string message) {
+void Server::Work::report(std::string message, bool is_error) {
   {
     const std::scoped_lock lock(inbox.mutex);
     inbox.report = std::move(message);
+    inbox.is_report_error = is_error;
   }
   wake();
 }
@@ -329,12 +330,14 @@ void Server::Work::take_presented() {
 // A client whose queue is too long does not get the report at all.
 void Server::Work::send_report(HostTime now) {
   std::string text;
+  bool is_error = false;
   {
     const std::scoped_lock lock(inbox.mutex);
     text.swap(inbox.report);
+    is_error = inbox.is_report_error;
   }
   if (text.empty()) return;
-  const SharedBytes message = shared_message(text_message(MessageType::report, text));
+  const SharedBytes message = shared_message(report_message(text, is_error));
   for (Connection& client : connections_)
     if (client.is_page() && client.accepts_updates())
       client.send(Opcode::binary, message, false, now);

@@ -93,8 +93,8 @@ public:
   /// Returns the next command of all clients, in order of arrival, or nothing. Only for one thread;
   /// wait-free.
   std::optional<ClientCommand> next_command() noexcept;
-  /// Sends a report to all clients.
-  void report(std::string message);
+  /// Sends a report to all clients, which show an error in another colour.
+  void report(std::string message, bool is_error);
   // The server sends the following values to clients when they connect, and after changes.
   void set_settings(const flow::LoopSettings& settings);
   /// Sets which commands of the table are on, and the refusals of others.

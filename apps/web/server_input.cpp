@@ -239,7 +239,7 @@ void Server::Work::handle(Connection& connection, const std::string& text, HostT
     return;
   }
   if (!commands.try_push(*command)) // the run has stopped
-    report("The run does not answer, and what was asked of it is dropped.");
+    report("The run does not answer, and what was asked of it is dropped.", true);
 }
 
 } // namespace nendo::web

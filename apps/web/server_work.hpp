@@ -40,7 +40,7 @@ public:
   void wake() noexcept;
   /// Presents a loop, whose id this sets, or with `is_beside` something in its place.
   void present(Presented next, std::vector<std::byte> model, bool is_beside);
-  void report(std::string message);
+  void report(std::string message, bool is_error);
 
   const Endpoint endpoint;
   const std::string token;
@@ -63,9 +63,10 @@ public:
     std::optional<Presented> next;   ///< set by present(), not taken yet
     std::optional<Presented> beside; ///< set by present_beside(), not taken yet
     std::uint16_t loops = 0;
-    std::string report;    ///< the newest report; empty: already sent
-    HostTime next_marks{}; ///< the earliest time of the next message about clay or a wire
-    Facts facts;           ///< messages; null until they are set
+    std::string report;           ///< the newest report; empty: already sent
+    bool is_report_error = false; ///< the newest report is one
+    HostTime next_marks{};        ///< the earliest time of the next message about clay or a wire
+    Facts facts;                  ///< messages; null until they are set
     std::array<std::uint64_t, fact_count> versions{}; ///< the last versions of versioned facts
     std::optional<Pictures> pictures;                 ///< set by set_pictures(), not taken yet
     std::deque<FormInput> inputs;                     ///< at most max_inputs

@@ -152,6 +152,12 @@ std::vector<std::byte> text_message(MessageType type, std::string_view text) {
   return message;
 }
 
+std::vector<std::byte> report_message(std::string_view text, bool is_error) {
+  std::vector<std::byte> message = text_message(MessageType::report, text);
+  message[1] = static_cast<std::byte>(is_error ? 1 : 0);
+  return message;
+}
+
 std::vector<std::byte> message_of(std::uint32_t number, const puppet::Rig* rig) {
   const std::span<const puppet::Function> functions =
       rig != nullptr ? std::span(rig->puppet().functions) : std::span<const puppet::Function>();

@@ -190,8 +190,9 @@ private:
 float as_float(double value) noexcept;
 
 UpdateHead head_of(const flow::Frame& frame) noexcept;
-/// Returns a text message: report, settings, commands, devices, form or figures. Allocates.
+/// Returns a text message: settings, commands, devices, form or figures. Allocates.
 std::vector<std::byte> text_message(MessageType type, std::string_view text);
+std::vector<std::byte> report_message(std::string_view text, bool is_error);
 /// Returns the history message. Allocates.
 std::vector<std::byte> message_of(const flow::StepList& steps);
 /// Returns the message with the puppet's functions, or with fingertips' masks; null: neither.

@@ -133,6 +133,7 @@ public:
   std::array<bool, 2> released{}; ///< released hands of a puppet
   bool symmetric = false, is_puppet = false;
   std::string report;                ///< the last report of the server
+  bool is_error = false;             ///< the last report was an error
   std::string devices;               ///< the text of the last devices message
   std::uint64_t implied_centres = 0; ///< centres that were left out
 
@@ -176,7 +177,10 @@ private:
     in.at = in.bytes.size();
     return {reinterpret_cast<const char*>(in.bytes.data()) + 4, in.bytes.size() - 4};
   }
-  void take_report(Bytes& in) { report = take_text(in); }
+  void take_report(Bytes& in) {
+    is_error = in.bytes[1] == std::byte{1};
+    report = take_text(in);
+  }
 
   void take_settings(Bytes& in) {
     ++settings_messages;

@@ -293,7 +293,10 @@ TEST_SUITE("run_web") {
     };
     browser.follow_until([&] { return browser.follower->updates > 60; });
     const auto saved = folder.path() / "clay-1.ply";
+    expect_report("redo", "nothing to redo");
+    CHECK(browser.follower->is_error);
     expect_report("save", "saved as " + saved.string());
+    CHECK_FALSE(browser.follower->is_error);
     const auto shape = deform::read_mesh(saved);
     REQUIRE(shape);
     CHECK(shape->vertices.cols() == static_cast<Eigen::Index>(browser.follower->order.size()));

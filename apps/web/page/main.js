@@ -88,7 +88,7 @@ function open(model) {
   socket.onmessage = ({ data }) => {
     if (stale) return
     const type = new DataView(data).getUint8(0)
-    if (type === 3) panel.report(textIn(data))
+    if (type === 3) panel.report(textIn(data), new Uint8Array(data)[1] === 1)
     else if (type === 4) takeSettings(readSettings(data))
     else if (type === 5) panel.setHistory(readSteps(data))
     else if (type === 7) takePuppet(readPuppet(data), model)

@@ -18,7 +18,7 @@ const OWN = {
   'list keys': panel => panel.help(),
 }
 const MAX_UNDOABLE = 48 // that the server lists
-const MESSAGE_LASTS = 8000 // ms, in place of the state
+const MESSAGE_LASTS = 8000 // ms
 const HINTS_CLOSED = 'nendo-hints=closed' // a cookie: it is that of all ports of this machine
 const helpOf = ({ help, keys }, refusal) => `${help}${refusal ? '\n' + refusal : ''} (${keys.join(', ')})`
 const commandNamed = wanted => COMMANDS.find(({ name }) => name === wanted)
@@ -83,7 +83,7 @@ class Panel {
     if (this.boxes.has(command.name)) return this.toggle(command.name)
     if (!command.isForRun) return OWN[command.name](this)
     const { refusal } = this.stateOf(command.name)
-    this.report(refusal)
+    this.report(refusal, true)
     if (refusal) return
     if (command.isSetting) this.shaping.giveWay()
     this.ask(command.name)
@@ -197,9 +197,10 @@ class Panel {
     })
   }
 
-  // In the status bar, in place of the state.
-  report(words) {
+  // In the status bar, beside the state.
+  report(words, isError) {
     setText(element('message'), words)
+    element('message').classList.toggle('error', isError)
     this.reported = performance.now()
   }
   say(words) {
@@ -258,7 +259,6 @@ class Panel {
     const { update, model, settings } = this
     if (!update || !model || !settings) return
     if (performance.now() - this.reported > MESSAGE_LASTS) setText(element('message'), '')
-    element('state').hidden = element('message').textContent !== ''
     this.drawStatus()
     setText(element('timing'), `${update.ticks} ticks, ${update.restChanges} changes of the rest shape` +
       (update.lost + update.skipped > 0 ? `, ${update.lost + update.skipped} not shown` : ''))
