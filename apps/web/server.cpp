@@ -312,7 +312,7 @@ void Server::Work::take_presented() {
   }
   if (next) loop_ = *std::move(next);
   if (beside) beside_ = *std::move(beside);
-  if (pictures) loop_.pictures = *std::move(pictures);
+  if (pictures) loop_.pictures = *pictures;
   const Presented& shown = beside_.stream ? beside_ : loop_;
   if (pictures) presented_.pictures = shown.pictures;
   if (shown.loop == presented_.loop) return;
