@@ -93,19 +93,32 @@ Result<std::string> name_beside(const std::string& to, const std::string& from) 
   return name;
 }
 
+namespace {
+
+std::string numbered(const std::string& stem, std::string_view ending, int number) {
+  return stem + "-" + std::to_string(number) + std::string(ending);
+}
+
+std::string stem_of(const std::filesystem::path& path) {
+  return (path.parent_path() / path.stem()).string();
+}
+
+} // namespace
+
 std::string numbered(const std::string& path, int number) {
-  const std::filesystem::path whole(path);
-  const std::string name =
-      whole.stem().string() + "-" + std::to_string(number) + whole.extension().string();
-  return (whole.parent_path() / name).string();
+  return numbered(stem_of(path), std::filesystem::path(path).extension().string(), number);
 }
 
 std::string next_free_name(const std::string& path, int& number) {
+  return next_free_name(stem_of(path), std::filesystem::path(path).extension().string(), number);
+}
+
+std::string next_free_name(const std::string& stem, std::string_view ending, int& number) {
   std::string name;
   std::error_code ignored;
   do
-    name = numbered(path, ++number);
-  while (std::filesystem::exists(name, ignored));
+    name = numbered(stem, ending, ++number);
+  while (std::filesystem::exists(std::filesystem::symlink_status(name, ignored)));
   return name;
 }
 

@@ -42,7 +42,10 @@ Result<std::string> name_beside(const std::string& to, const std::string& from);
 
 /// Returns "a/shape-2.obj" for "a/shape.obj" and 2.
 std::string numbered(const std::string& path, int number);
-/// Increases `number` to the next one with an unused numbered() name, and returns that name.
+/// Increases `number` to the next one with an unused numbered() name, and returns that name. A
+/// symbolic link uses its name, whether it leads somewhere or not.
 std::string next_free_name(const std::string& path, int& number);
+/// Does the same for a name that consists of `stem`, the number and `ending` (".timeline.toml").
+std::string next_free_name(const std::string& stem, std::string_view ending, int& number);
 
 } // namespace nendo::cli

@@ -6,6 +6,7 @@
 #include <nendo/base/files.hpp>
 #include <nendo/base/text.hpp>
 
+#include "cli/output_place.hpp"
 #include "timeline/edit.hpp"
 
 namespace nendo::studio {
@@ -42,10 +43,12 @@ Result<std::string> store_sent(const std::string& name, std::string_view bytes) 
   const auto ending = ending_in(name);
   if (!ending) return ending.error();
   const std::size_t stem = name.size() - *ending;
-  std::string place = name;
   std::error_code ignored;
-  for (int number = 1; exists(std::filesystem::symlink_status(place, ignored)); ++number)
-    place = name.substr(0, stem) + "-" + std::to_string(number) + name.substr(stem);
+  int number = 0;
+  const std::string place =
+      exists(std::filesystem::symlink_status(name, ignored))
+          ? cli::next_free_name(name.substr(0, stem), name.substr(stem), number)
+          : name;
   if (const auto written = replace_file(place, bytes); !written) return written.error();
   return place;
 }

@@ -7,6 +7,7 @@
 
 #include <nendo/base/text.hpp>
 
+#include "cli/output_place.hpp"
 #include "edit/edit_actions.hpp"
 #include "studio/waiting.hpp"
 
@@ -28,11 +29,12 @@ Frames frames_of_recording(const std::string& file, const std::string& out) {
 /// Of an earlier timeline of this recording nothing is overwritten.
 std::string beside_recording(const std::string& recording) {
   const std::string stem = std::filesystem::path(recording).replace_extension().string();
+  const std::string file = stem + std::string(timeline::file_ending);
   std::error_code ignored;
-  std::string file = stem + std::string(timeline::file_ending);
-  for (int number = 2; std::filesystem::exists(file, ignored); ++number)
-    file = stem + "-" + std::to_string(number) + std::string(timeline::file_ending);
-  return file;
+  int number = 1;
+  return std::filesystem::exists(file, ignored)
+             ? cli::next_free_name(stem, timeline::file_ending, number)
+             : file;
 }
 
 } // namespace
