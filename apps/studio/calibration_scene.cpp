@@ -19,16 +19,12 @@ using render::Surface;
 
 // Linear colours.
 const Material live_skin{{0.52F, 0.42F, 0.36F}, 0.10F};
-const Material wrong_skin{{0.80F, 0.16F, 0.02F}, 0.10F};
-const Material right_skin{{0.10F, 0.50F, 0.12F}, 0.10F};
+const Vector3f wrong{0.80F, 0.16F, 0.02F}, right{0.10F, 0.50F, 0.12F}, way{0.95F, 0.30F, 0.02F};
 const Material shell{{0.10F, 0.28F, 0.62F}, 0.0F, 0.20F, 0.75F, 0.0F, 0.0F, false, true};
 const Material glass{{0.33F, 0.345F, 0.37F}, 0.05F, 0.30F, 0.85F, 0.0F, 0.0F, false, true};
-const Material arrow_colour{{0.95F, 0.30F, 0.02F}, 0.20F, 1.0F, 1.0F, 0.0F, 0.0F, false, true};
+const Material arrow_look{way, 0.20F, 1.0F, 1.0F, 0.0F, 0.0F, false, true};
 
 constexpr float arrow_width_m = 0.008F;
-constexpr float ball_radius_m = 0.0065F;
-constexpr double hand_height_m = 0.27;    ///< with a part of the forearm
-constexpr double middle_height_m = 0.085; ///< the picture's; the hand's is below
 
 /// Returns the finger whose joints carry a place beyond its knuckle.
 std::optional<std::size_t> finger_of(Joint joint) noexcept {
@@ -138,11 +134,10 @@ render::View view_of(PoseId pose, Side side) noexcept {
 }
 
 render::Camera camera_for(const render::View& view, double width_m, double aspect) noexcept {
-  constexpr double height_part = 0.82; // words are above the hand
   render::Camera camera;
   camera.view = view;
   camera.target = {0.0, middle_height_m, 0.0};
-  const double height_m = std::max(hand_height_m / height_part, width_m / std::max(aspect, 0.2));
+  const double height_m = std::max(picture_height_m, width_m / std::max(aspect, 0.2));
   camera.distance_m = height_m / (2.0 * camera.tangent());
   return camera;
 }
@@ -175,7 +170,7 @@ std::vector<Surface> HandPainter::live(const ShownHand& hand) const {
     return finger && hand.marked[*finger];
   };
   return {part_of(whole, live_skin, std::not_fn(is_marked)),
-          part_of(whole, hand.is_wrong ? wrong_skin : right_skin, is_marked)};
+          part_of(whole, Material{mark_colour(hand.is_wrong), 0.10F}, is_marked)};
 }
 
 std::vector<Surface> HandPainter::balls(const std::vector<JointMark>& joints) {
@@ -185,7 +180,7 @@ std::vector<Surface> HandPainter::balls(const std::vector<JointMark>& joints) {
     Surface balls{{}, {}, {}, Material{colour_of(certainty), 0.2F}};
     for (const JointMark& joint : joints)
       if (joint.certainty == certainty)
-        add_sphere(balls, joint.place_m.cast<float>(), ball_radius_m, 14);
+        add_sphere(balls, joint.place_m.cast<float>(), static_cast<float>(ball_radius_m), 14);
     if (!balls.is_empty()) surfaces.push_back(std::move(balls));
   }
   return surfaces;
@@ -193,7 +188,7 @@ std::vector<Surface> HandPainter::balls(const std::vector<JointMark>& joints) {
 
 const JointMark* mark_at(const Eigen::Vector2d& pixel, const render::Camera& camera,
                          render::Size size, const std::vector<JointMark>& joints) {
-  const Vector3d aside = static_cast<double>(ball_radius_m) * camera.axes().row(0).transpose();
+  const Vector3d aside = ball_radius_m * camera.axes().row(0).transpose();
   const JointMark* nearest = nullptr;
   double least = 1.0; // of a ball's radius
   for (const JointMark& joint : joints) {
@@ -221,10 +216,18 @@ Ways ways(const hand::HandPose& live, const hand::HandPose& asked, const Fingers
 }
 
 Surface arrows(const Ways& ways) {
-  Surface surface{{}, {}, {}, arrow_colour};
+  Surface surface{{}, {}, {}, arrow_look};
   for (const auto& [from, to] : ways)
     add_arrow(surface, from.cast<float>(), to.cast<float>(), arrow_width_m);
   return surface;
+}
+
+Vector3f way_colour() noexcept {
+  return way;
+}
+
+Vector3f mark_colour(bool is_wrong) noexcept {
+  return is_wrong ? wrong : right;
 }
 
 Vector3f colour_of(calibrate::Certainty certainty) noexcept {

@@ -77,7 +77,14 @@ const JointMark* mark_at(const Eigen::Vector2d& pixel, const render::Camera& cam
 
 render::Surface arrows(const Ways& ways);
 
-/// Returns the linear colour of a certainty.
+constexpr double ball_radius_m = 0.0065; ///< the mark of a joint
+constexpr double picture_height_m =
+    0.27 / 0.82;                          ///< a hand with a part of the forearm, and words above it
+constexpr double middle_height_m = 0.085; ///< the picture's; the hand's is below
+// Linear colours.
+Eigen::Vector3f way_colour() noexcept;
+Eigen::Vector3f mark_colour(bool is_wrong) noexcept; ///< a marked finger's
+/// Returns the colour of a certainty.
 Eigen::Vector3f colour_of(calibrate::Certainty certainty) noexcept;
 
 } // namespace nendo::studio

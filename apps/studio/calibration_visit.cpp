@@ -6,35 +6,33 @@
 #include <nendo/base/text.hpp>
 
 #include "gloves/open_hand.hpp"
-#include "studio/waiting.hpp"
 
 namespace nendo::studio {
-CalibrationVisit::CalibrationVisit(viewer::SceneWindow& window, std::string glove)
+
+CalibrationVisit::CalibrationVisit(std::string glove)
     : name_(std::move(glove)), opening_(std::async(std::launch::async, [name = name_] {
         return driver::open_glove(name, std::nullopt, gloves::glove_context());
-      })) {
-  window.clear_model();
-}
+      })) {}
 
-CalibrationVisit::~CalibrationVisit() = default;
-
-Result<Wish> CalibrationVisit::show(viewer::SceneWindow& window) {
-  if (!screen_) {
-    if (opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
-      show_waiting(window, "Opening " + printable(name_));
-      return Wish{};
-    }
+Result<driver::Glove*> CalibrationVisit::glove() {
+  if (!glove_) {
+    if (opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return nullptr;
     auto opened = opening_.get();
     if (!opened) return opened.error();
     glove_ = *std::move(opened);
-    screen_ = std::make_unique<CalibrationScreen>(*glove_, calibrate::CalibrationRequest{});
-    if (const auto started = screen_->start(); !started) return started.error();
   }
-  const auto ended = screen_->show(window);
-  if (!ended) return Wish{};
-  if (!*ended) return ended->error();
-  const CalibrationOutcome& outcome = **ended;
-  if (outcome.adapt && outcome.finished) learns_for_ = outcome.finished->wearer.user;
+  return glove_.get();
+}
+
+std::string CalibrationVisit::waiting_words() const {
+  return "Opening " + printable(name_);
+}
+
+Result<Wish> CalibrationVisit::follow(const std::optional<Result<CalibrationOutcome>>& outcome) {
+  if (!outcome) return Wish{};
+  if (!*outcome) return outcome->error();
+  const CalibrationOutcome& done = **outcome;
+  if (done.adapt && done.finished) learns_for_ = done.finished->wearer.user;
   return Wish{Go{Screen::start}};
 }
 

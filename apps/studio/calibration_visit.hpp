@@ -1,25 +1,29 @@
 #pragma once
-// A calibration as a screen of the studio: opens the glove, and closes it at the end. Main thread.
+// A calibration as a screen of the studio, in the window or on the page: opens the glove, and
+// closes it at the end. Main thread.
 
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 
-#include "studio/calibration_screen.hpp"
+#include "studio/calibration_course.hpp"
 #include "studio/wish.hpp"
-#include "viewer/scene_window.hpp"
 
 namespace nendo::studio {
 
 class CalibrationVisit {
 public:
   /// Begins to open the glove in a thread of its own.
-  CalibrationVisit(viewer::SceneWindow& window, std::string glove);
-  ~CalibrationVisit(); ///< closes the glove
+  explicit CalibrationVisit(std::string glove);
 
-  /// Draws one picture. Returns Go to the start when it is over. Errors: those of open_glove() and
-  /// of the screen.
-  Result<Wish> show(viewer::SceneWindow& window);
+  /// Returns the glove, which is valid as long as this; null: it is still being opened. Errors:
+  /// those of open_glove().
+  Result<driver::Glove*> glove();
+  /// Returns what is to be shown until the glove is open.
+  std::string waiting_words() const;
+  /// Returns Go to the start once the calibration has an outcome. Error: that of the outcome.
+  Result<Wish> follow(const std::optional<Result<CalibrationOutcome>>& outcome);
   /// Returns the wearer whose gloves a run continues to learn; empty: no wearer.
   const std::string& learns_for() const noexcept { return learns_for_; }
 
@@ -27,7 +31,6 @@ private:
   std::string name_;
   std::future<Result<std::unique_ptr<driver::Glove>>> opening_;
   std::unique_ptr<driver::Glove> glove_;
-  std::unique_ptr<CalibrationScreen> screen_;
   std::string learns_for_;
 };
 

@@ -12,12 +12,13 @@
 
 #include "render/camera.hpp"
 #include "render/scene_frame.hpp"
+#include "studio/calibration_scene.hpp"
 
 namespace nendo::studio {
 
 class PageFigures {
 public:
-  enum class Look : std::uint8_t { live, ghost, glass };
+  using Look = ShownHand::Look;
 
   void add(Side side, const hand::HandPose& pose, Look look);
   void add(const render::SceneFrame& frame);

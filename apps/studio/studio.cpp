@@ -10,10 +10,10 @@
 #include "cli/model_files.hpp"
 #include "session/kept_state.hpp"
 #include "studio/bar.hpp"
-#include "studio/calibration_visit.hpp"
 #include "studio/start_screen.hpp"
 #include "studio/studio_view.hpp"
 #include "studio/timeline_tab.hpp"
+#include "studio/window_calibration.hpp"
 
 namespace nendo::studio {
 namespace {
@@ -122,7 +122,7 @@ private:
       return bar_.show_error("No glove is here to calibrate. Plug one in, and choose Calibrate "
                              "beside its hand.");
     screen_ = Screen::calibration;
-    calibration_ = std::make_unique<CalibrationVisit>(*window_, glove);
+    calibration_ = std::make_unique<WindowCalibration>(*window_, glove);
   }
 
   void enter_timeline() {
@@ -167,7 +167,7 @@ private:
   Bar bar_;
   std::unique_ptr<StartScreen> start_;
   TimelineTab timeline_;
-  std::unique_ptr<CalibrationVisit> calibration_;
+  std::unique_ptr<WindowCalibration> calibration_;
   std::unique_ptr<StudioView> view_;
   Screen screen_ = Screen::start;
   std::optional<Shape> next_;
