@@ -5,12 +5,10 @@
 #include <thread>
 #include <utility>
 
-#include <nendo/base/endings.hpp>
 #include <nendo/base/text.hpp>
 
 #include "cli/cli.hpp"
 #include "cli/model_files.hpp"
-#include "session/kept_state.hpp"
 #include "studio/opened_files.hpp"
 #include "studio/page_calibration.hpp"
 #include "studio/page_figures.hpp"
@@ -18,6 +16,7 @@
 #include "studio/page_replay.hpp"
 #include "studio/page_run.hpp"
 #include "studio/start_choices.hpp"
+#include "studio/studio_flow.hpp"
 
 namespace nendo::studio {
 namespace {
@@ -26,10 +25,10 @@ namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds picture_time(33);
 constexpr const char* screen_names[] = {"start", "shaping", "shaping", "timeline", "calibration"};
 
-class PageStudio final : public Studio {
+class PageStudio final : public StudioFlow {
 public:
   PageStudio(std::shared_ptr<web::Server> server, StudioOptions options)
-      : server_(std::move(server)), options_(std::move(options)) {}
+      : StudioFlow(std::move(options)), server_(std::move(server)) {}
 
   std::optional<Shape> choose() override {
     cli::install_stop_signals();
@@ -41,9 +40,8 @@ public:
       std::this_thread::sleep_until(due);
     }
     leave_screen();
-    if (next_) next_->learns_for = learns_for_;
     server_->set_figures(PageFigures().message());
-    return std::exchange(next_, std::nullopt);
+    return take_next();
   }
 
   session::Observer* observe(const session::RunOptions& run, bool asks_to_save) override {
@@ -51,13 +49,6 @@ public:
     has_run_ = true;
     received_.clear(); // it can be read
     return view_.get();
-  }
-
-  bool goes_on() override {
-    const Wish wish = view_ ? view_->left_for() : Wish{};
-    if (!is_wish(wish)) is_over_ = true; // it has ended by itself
-    follow(wish);
-    return !is_over_;
   }
 
   void show_error(const std::string& message) override {
@@ -76,7 +67,7 @@ private:
 
   void show_one() {
     form_.begin(server_->next_input());
-    follow(describe_bar(form_, screen(), {}));
+    follow_seen(describe_bar(form_, screen(), {}));
     show_dialog();
     const Screen now = screen(); // the bar and the dialog may lead to another one
     PageFigures figures;
@@ -91,7 +82,7 @@ private:
 
   void follow_shown(const Result<Wish>& wish) {
     if (!wish) show_error(wish.error().message);
-    follow(wish ? *wish : Wish{Go{Screen::start}});
+    follow_seen(wish ? *wish : Wish{Go{Screen::start}});
   }
 
   void show_dialog() {
@@ -122,11 +113,18 @@ private:
     form_.part("hands");
     form_.title("Your hands", "");
     const Wish of_hands = start_->describe_hands(form_);
-    follow(is_wish(of_hands) ? of_hands : of_ways);
+    follow_seen(is_wish(of_hands) ? of_hands : of_ways);
   }
 
-  /// Ends the screen that is shown; its gloves are closed.
-  void leave_screen() {
+  void follow_seen(const Wish& wish) {
+    if (is_wish(wish)) received_.clear(); // the user has seen the file, and left it
+    follow(wish);
+  }
+
+  Wish left_for() const override { return view_ ? view_->left_for() : Wish{}; }
+  std::string found_glove() const override { return start_ ? start_->found_glove() : ""; }
+
+  void leave_screen() override {
     if (calibration_) learns_for_ = calibration_->learns_for();
     start_.reset();
     calibration_.reset();
@@ -134,28 +132,17 @@ private:
     form_.forget_images();
   }
 
-  /// Calibrates this glove, or if none is named, the one that is there.
-  void calibrate(std::string glove) {
-    for (const std::string& named : options_.gloves)
-      if (glove.empty()) glove = named;
-    if (glove.empty() && start_) glove = start_->found_glove();
+  void enter_timeline(const std::string& file) override {
     leave_screen();
-    if (glove.empty())
-      return show_error("No glove is here to calibrate. Plug one in, and choose Calibrate beside "
-                        "its hand.");
+    replay_ = std::make_unique<PageReplay>(*server_, file);
+  }
+
+  void enter_calibration(const std::string& glove) override {
     calibration_ = std::make_unique<PageCalibration>(glove);
   }
 
-  void follow(const Wish& wish) {
-    if (is_wish(wish)) received_.clear(); // the user has seen it, and left it
-    if (const auto* const shape = std::get_if<Shape>(&wish)) begin_run(*shape);
-    if (const auto* const there = std::get_if<Go>(&wish)) go(*there);
-    if (const auto* const file = std::get_if<Open>(&wish)) open(file->file);
-    if (std::holds_alternative<Quit>(wish)) is_over_ = true;
-  }
-
   /// A puppet that is new is made in the window.
-  void begin_run(const Shape& shape) {
+  void begin_run(const Shape& shape) override {
     std::error_code ignored;
     const bool is_for_model = !shape.model.empty() && !shape.puppet.empty();
     if (is_for_model && !fs::exists(shape.puppet, ignored))
@@ -165,15 +152,7 @@ private:
     next_ = shape;
   }
 
-  void go(const Go& there) {
-    if (there.screen == Screen::shaping) next_ = Shape{};
-    if (there.screen == Screen::puppet) next_ = Shape{{}, {}, "face"};
-    if (there.screen == Screen::timeline) begin_replay({});
-    if (there.screen == Screen::calibration) calibrate(there.glove);
-    if (there.screen == Screen::start) leave_screen();
-  }
-
-  void open(const std::string& file) {
+  void open(const std::string& file) override {
     is_opening_ = file.empty();
     if (file.empty()) return;
     // Who uses the page from elsewhere shall learn nothing of other files.
@@ -181,18 +160,7 @@ private:
     std::error_code error;
     if (!fs::is_regular_file(file, error))
       return show_error(printable(file) + ": there is no such file on the machine of the gloves");
-    session::keep_recent_file(file);
-    if (opens_in_timeline(file))
-      begin_replay(file);
-    else if (ends_in(file, ".toml"))
-      next_ = Shape{{}, {}, file};
-    else
-      next_ = Shape{file};
-  }
-
-  void begin_replay(const std::string& file) {
-    leave_screen();
-    replay_ = std::make_unique<PageReplay>(*server_, file);
+    begin_with(file);
   }
 
   void open_received(const web::Server::File& file) {
@@ -204,20 +172,16 @@ private:
   }
 
   std::shared_ptr<web::Server> server_;
-  StudioOptions options_;
   PageForm form_;
   std::unique_ptr<StartChoices> start_;
   std::unique_ptr<PageReplay> replay_;
   std::unique_ptr<PageCalibration> calibration_;
   std::unique_ptr<PageRun> view_;
-  std::optional<Shape> next_;
-  std::string learns_for_; ///< as in Shape
-  std::string error_;      ///< shown until it is closed
-  std::string received_;   ///< a file that was sent, removed if it cannot be read; empty: none
+  std::string error_;    ///< shown until it is closed
+  std::string received_; ///< a file that was sent, removed if it cannot be read; empty: none
   bool is_opening_ = false;
   std::string file_;    ///< the name that is typed
   bool has_run_ = true; ///< the server has another loop
-  bool is_over_ = false;
 };
 
 } // namespace

@@ -8,9 +8,9 @@
 
 #include "cli/cli.hpp"
 #include "cli/model_files.hpp"
-#include "session/kept_state.hpp"
 #include "studio/bar.hpp"
 #include "studio/start_screen.hpp"
+#include "studio/studio_flow.hpp"
 #include "studio/studio_view.hpp"
 #include "studio/timeline_tab.hpp"
 #include "studio/window_calibration.hpp"
@@ -18,10 +18,10 @@
 namespace nendo::studio {
 namespace {
 
-class WindowStudio final : public Studio {
+class WindowStudio final : public StudioFlow {
 public:
   WindowStudio(std::shared_ptr<viewer::SceneWindow> window, StudioOptions options)
-      : window_(std::move(window)), options_(std::move(options)), bar_(*window_),
+      : StudioFlow(std::move(options)), window_(std::move(window)), bar_(*window_),
         timeline_(window_, bar_) {
     if (!options_.timeline) return;
     timeline_.open(*options_.timeline);
@@ -37,8 +37,7 @@ public:
     if (!options_.view.screenshot.empty() && !next_) last_picture_ = window_->screenshot();
     start_.reset(); // closes its gloves, which the run opens
     calibration_.reset();
-    if (next_) next_->learns_for = learns_for_;
-    return std::exchange(next_, std::nullopt);
+    return take_next();
   }
 
   session::Observer* observe(const session::RunOptions& run, bool asks_to_save) override {
@@ -46,13 +45,6 @@ public:
         StudioView::Parts{bar_, timeline_, session::live_view(options_.view, run, window_)},
         cli::short_name(run.mesh), asks_to_save);
     return view_.get();
-  }
-
-  bool goes_on() override {
-    const Wish wish = view_ ? view_->left_for() : Wish{};
-    if (!is_wish(wish)) is_over_ = true; // it has ended by itself
-    follow(wish);
-    return !is_over_;
   }
 
   void show_error(const std::string& message) override {
@@ -67,12 +59,12 @@ public:
 
 private:
   void show_one() {
-    follow(screen_ == Screen::timeline ? show_timeline()
-           : calibration_              ? show_calibration()
-                                       : show_start());
-    follow(bar_.take_wish());
-    follow(timeline_.take_settled());
-    if (window_->take_close_request()) follow(Quit{});
+    follow_safely(screen_ == Screen::timeline ? show_timeline()
+                  : calibration_              ? show_calibration()
+                                              : show_start());
+    follow_safely(bar_.take_wish());
+    follow_safely(timeline_.take_settled());
+    if (window_->take_close_request()) follow_safely(Quit{});
     if (is_complete()) ++shown_;
     if (options_.view.frames > 0 && shown_ >= options_.view.frames) is_over_ = true;
   }
@@ -111,70 +103,42 @@ private:
     return Go{Screen::start};
   }
 
-  /// Calibrates this glove, or if none is named, the one that is there.
-  void calibrate(std::string glove) {
-    for (const std::string& named : options_.gloves)
-      if (glove.empty()) glove = named;
-    if (glove.empty() && start_) glove = start_->found_glove();
-    start_.reset(); // closes it
+  /// Asks before edits of the timeline are lost.
+  void follow_safely(const Wish& wish) {
+    if (timeline_.lets(wish)) follow(wish);
+  }
+
+  Wish left_for() const override { return view_ ? view_->left_for() : Wish{}; }
+  std::string found_glove() const override { return start_ ? start_->found_glove() : ""; }
+  void open(const std::string& file) override { begin_with(file); }
+
+  void leave_screen() override {
+    start_.reset();
+    calibration_.reset();
     screen_ = Screen::start;
-    if (glove.empty())
-      return bar_.show_error("No glove is here to calibrate. Plug one in, and choose Calibrate "
-                             "beside its hand.");
+  }
+
+  void enter_timeline(const std::string& file) override {
+    if (!file.empty()) timeline_.open(file);
+    timeline_.enter();
+    leave_screen();
+    screen_ = Screen::timeline;
+  }
+
+  void enter_calibration(const std::string& glove) override {
     screen_ = Screen::calibration;
     calibration_ = std::make_unique<WindowCalibration>(*window_, glove);
   }
 
-  void enter_timeline() {
-    timeline_.enter();
-    start_.reset();
-    calibration_.reset();
-    screen_ = Screen::timeline;
-  }
-
-  void follow(const Wish& wish) {
-    if (!timeline_.lets(wish)) return;
-    if (const auto* const shape = std::get_if<Shape>(&wish)) next_ = *shape;
-    if (const auto* const there = std::get_if<Go>(&wish)) go(*there);
-    if (const auto* const file = std::get_if<Open>(&wish)) open(file->file);
-    if (std::holds_alternative<Quit>(wish)) is_over_ = true;
-  }
-
-  void go(const Go& there) {
-    if (there.screen == Screen::shaping) next_ = Shape{};
-    if (there.screen == Screen::puppet) next_ = Shape{{}, {}, "face"};
-    if (there.screen == Screen::timeline) enter_timeline();
-    if (there.screen == Screen::calibration) calibrate(there.glove);
-    if (there.screen != Screen::start) return;
-    calibration_.reset();
-    screen_ = Screen::start;
-  }
-
-  void open(const std::string& file) {
-    session::keep_recent_file(file);
-    if (opens_in_timeline(file)) {
-      timeline_.open(file);
-      return enter_timeline();
-    }
-    if (file.ends_with(".toml"))
-      next_ = Shape{{}, {}, file};
-    else
-      next_ = Shape{file};
-  }
-
   std::shared_ptr<viewer::SceneWindow> window_;
-  StudioOptions options_;
   Bar bar_;
   std::unique_ptr<StartScreen> start_;
   TimelineTab timeline_;
   std::unique_ptr<WindowCalibration> calibration_;
   std::unique_ptr<StudioView> view_;
   Screen screen_ = Screen::start;
-  std::optional<Shape> next_;
-  std::string learns_for_; ///< as in Shape
   std::optional<render::Image> last_picture_;
   std::uint32_t shown_ = 0;
-  bool is_over_ = false;
 };
 
 } // namespace

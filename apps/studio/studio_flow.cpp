@@ -1,0 +1,63 @@
+#include "studio/studio_flow.hpp"
+
+#include <utility>
+
+#include <nendo/base/endings.hpp>
+
+#include "session/kept_state.hpp"
+#include "studio/opened_files.hpp"
+
+namespace nendo::studio {
+
+bool StudioFlow::goes_on() {
+  const Wish wish = left_for();
+  if (!is_wish(wish)) is_over_ = true; // the run has ended by itself
+  follow(wish);
+  return !is_over_;
+}
+
+void StudioFlow::follow(const Wish& wish) {
+  if (const auto* const shape = std::get_if<Shape>(&wish)) begin_run(*shape);
+  if (const auto* const file = std::get_if<Open>(&wish)) open(file->file);
+  if (std::holds_alternative<Quit>(wish)) is_over_ = true;
+  const auto* const there = std::get_if<Go>(&wish);
+  if (there == nullptr) return;
+  switch (there->screen) {
+  case Screen::start:
+    return leave_screen();
+  case Screen::shaping:
+    next_ = Shape{};
+    return;
+  case Screen::puppet:
+    next_ = Shape{{}, {}, "face"};
+    return;
+  case Screen::timeline:
+    return enter_timeline({});
+  case Screen::calibration:
+    return calibrate(there->glove);
+  }
+}
+
+void StudioFlow::begin_with(const std::string& file) {
+  session::keep_recent_file(file);
+  if (opens_in_timeline(file)) return enter_timeline(file);
+  next_ = ends_in(file, ".toml") ? Shape{{}, {}, file} : Shape{file};
+}
+
+std::optional<Shape> StudioFlow::take_next() {
+  if (next_) next_->learns_for = learns_for_;
+  return std::exchange(next_, std::nullopt);
+}
+
+void StudioFlow::calibrate(std::string glove) {
+  for (const std::string& named : options_.gloves)
+    if (glove.empty()) glove = named;
+  if (glove.empty()) glove = found_glove();
+  leave_screen();
+  if (glove.empty())
+    return show_error("No glove is here to calibrate. Plug one in, and choose Calibrate beside its "
+                      "hand.");
+  enter_calibration(glove);
+}
+
+} // namespace nendo::studio

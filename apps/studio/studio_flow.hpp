@@ -1,0 +1,50 @@
+#pragma once
+// Which screen of the studio follows which, in the window and on the page. Main thread.
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "studio/studio.hpp"
+#include "studio/wish.hpp"
+
+namespace nendo::studio {
+
+class StudioFlow : public Studio {
+public:
+  bool goes_on() final;
+
+protected:
+  explicit StudioFlow(StudioOptions options) : options_(std::move(options)) {}
+
+  /// Follows a wish to another screen, to a run, or to the end.
+  void follow(const Wish& wish);
+  /// Opens a model, a puppet, a recording or a timeline.
+  void begin_with(const std::string& file);
+  /// Returns the wanted run; nothing: none is wanted.
+  std::optional<Shape> take_next();
+
+  const StudioOptions options_;
+  std::optional<Shape> next_;
+  std::string learns_for_; ///< as in Shape
+  bool is_over_ = false;
+
+private:
+  /// Calibrates this glove, or if none is named, the one that is there.
+  void calibrate(std::string glove);
+
+  /// Returns where the user went when the run was left.
+  virtual Wish left_for() const = 0;
+  virtual void begin_run(const Shape& shape) { next_ = shape; }
+  /// Opens a file; empty: asks for one.
+  virtual void open(const std::string& file) = 0;
+  /// Returns the GLOVE that the start shows; empty: none.
+  virtual std::string found_glove() const = 0;
+  /// Ends the screen that is shown, and so closes its gloves. The start follows.
+  virtual void leave_screen() = 0;
+  /// Shows a recording or a timeline; without a file, the one that is open.
+  virtual void enter_timeline(const std::string& file) = 0;
+  virtual void enter_calibration(const std::string& glove) = 0;
+};
+
+} // namespace nendo::studio
