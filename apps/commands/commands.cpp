@@ -76,13 +76,6 @@ const Row* named(std::string_view name) noexcept {
   return found == rows.end() ? nullptr : found;
 }
 
-const Row* row_changing(std::string_view setting) noexcept {
-  const auto* const found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
-    return (row.places & on_page) != 0 && row.setting == setting;
-  });
-  return found == rows.end() ? nullptr : found;
-}
-
 const Row* with_key(std::string_view key, std::uint8_t places) noexcept {
   const auto* const found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
     return (row.places & places) != 0 && row.has_key(key);
@@ -129,6 +122,12 @@ std::string keys_of(const Row& row) {
   for (const std::string_view key : row.keys)
     if (!key.empty()) text += (text.empty() ? "" : ", ") + std::string(key);
   return text;
+}
+
+std::string help_of(const Row& row, const State& now) {
+  std::string text(row.help);
+  if (const char* const refusal = row.refusal_in(now)) text.append("\n").append(refusal);
+  return text + " (" + keys_of(row) + ")";
 }
 
 std::string key_list(std::uint8_t places, std::string_view before, std::string_view between) {

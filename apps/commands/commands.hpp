@@ -92,8 +92,6 @@ std::span<const Row> table() noexcept;
 /// Return the row of that name, or with that key in one of the places; null: none.
 const Row* named(std::string_view name) noexcept;
 const Row* with_key(std::string_view key, std::uint8_t places) noexcept;
-/// Returns the first row on the page that changes a setting of flow/setting.hpp; null: none does.
-const Row* row_changing(std::string_view setting) noexcept;
 /// Returns the name of the row that makes this type of command, such as "wire"; without a row,
 /// "role" or "a command".
 std::string_view name_of(const flow::Command& command) noexcept;
@@ -141,6 +139,8 @@ inline constexpr std::array hints{
 
 /// Returns the keys of a row, separated by commas: "u, Ctrl Z".
 std::string keys_of(const Row& row);
+/// Returns the tooltip of a row: its help, why it is not possible now, and its keys.
+std::string help_of(const Row& row, const State& now);
 /// Returns the key list of a place, for a terminal or a manual page. `before` precedes each row's
 /// keys, and `between` its sentence.
 std::string key_list(std::uint8_t places, std::string_view before, std::string_view between);

@@ -1,3 +1,4 @@
+#include <chrono>
 #include <memory>
 #include <string>
 #include <utility>
@@ -7,17 +8,22 @@
 #include "cli/model_files.hpp"
 #include "session/views.hpp"
 #include "web/model_message.hpp"
+#include "web/page_panel.hpp"
 #include "web/server.hpp"
 
 namespace nendo::session {
 namespace {
 
-/// Returns the text of the devices message.
-std::string device_lines(const gloves::DeviceStatuses& devices) {
-  std::string lines;
-  for (const Side side : {Side::left, Side::right})
-    for (const auto& [title, state] : devices[flow::Placement::index_of(side)])
-      lines.append(name_of(side)).append("\t").append(title).append("\t").append(state) += '\n';
+using Clock = std::chrono::steady_clock;
+/// Between descriptions of the panel, if no user does something to it, and of the status bar, whose
+/// figures are to be read.
+constexpr std::chrono::milliseconds panel_period(33), status_period(200);
+
+forms::DeviceLines device_lines(const gloves::DeviceStatuses& devices) {
+  forms::DeviceLines lines;
+  for (std::size_t slot = 0; slot < devices.size(); ++slot)
+    for (const auto& [title, state] : devices[slot])
+      lines[slot].insert(lines[slot].end(), {title, state});
   return lines;
 }
 
@@ -51,28 +57,49 @@ public:
     return {};
   }
   void update(const RunStatus& status, Asks& asks) override {
-    server_->set_devices(device_lines(status.devices));
     server_->set_settings(status.frame.settings);
     server_->set_commands(status.situation());
     server_->follow(status.frame, status.puppet.get());
     update_weights();
-    pending_.follow(status.frame.settings);
+    panel_.pending.follow(status.frame.settings);
+    show_panel(status);
     while (auto asked = server_->next_command()) {
       if (const auto* const row = std::get_if<const commands::Row*>(&*asked)) {
-        const commands::Answer answer = commands::press(**row, status.situation(), pending_);
-        if (answer.command) asks.emplace_back(*answer.command);
-        if (answer.refusal != nullptr) server_->report(answer.refusal, true);
+        panel_.ask(**row, status.situation());
+        if (!panel_.note.empty()) server_->report(panel_.note, true);
       } else if (const auto* const settings = std::get_if<web::NamedSettings>(&*asked)) {
-        settings->apply_to(pending_.now);
-        if (const auto change = pending_.ask()) asks.emplace_back(*change);
+        settings->apply_to(panel_.pending.now);
       } else {
-        asks.emplace_back(std::get<flow::Command>(*asked));
+        panel_.commands.push_back(std::get<flow::Command>(*asked));
       }
+      if (const auto change = panel_.pending.ask()) panel_.commands.push_back(*change);
     }
+    asks.insert(asks.end(), panel_.commands.begin(), panel_.commands.end());
+    panel_.commands.clear();
   }
   void report(const Report& message) override { server_->report(message.text, message.is_error); }
 
 private:
+  void show_panel(const RunStatus& status) {
+    auto input = server_->next_input(web::FormKind::run);
+    const auto now = Clock::now();
+    if (server_->counters().clients == 0 || (!input && now < next_panel_)) return;
+    next_panel_ = now + panel_period;
+    const auto message = [&] {
+      return panel_.message(std::exchange(input, std::nullopt), status.situation(),
+                            device_lines(status.devices), status.puppet.get());
+    };
+    for (; input; input = server_->next_input(web::FormKind::run)) {
+      message();
+      if (const auto change = panel_.pending.ask()) panel_.commands.push_back(*change);
+    }
+    server_->set_form(web::FormKind::run, message());
+    if (now < next_status_) return;
+    next_status_ = now + status_period;
+    server_->set_form(web::FormKind::status,
+                      web::status_message(status.frame, placed_->setup.options.rate_hz,
+                                          status.model.mesh.vertex_count()));
+  }
   Result<void> check(const deform::BlockLayout& layout) const {
     if (layout.vertex_count() <= web::max_vertices) return {};
     return Error{Errc::bad_input, "--web: the model has " + std::to_string(layout.vertex_count()) +
@@ -101,7 +128,8 @@ private:
 
   std::shared_ptr<web::Server> server_;
   VersionTarget<web::FrameStream> streams_;
-  flow::PendingSettings pending_;     ///< the settings of all clients
+  web::PagePanel panel_; ///< the panel that all clients share
+  Clock::time_point next_panel_{}, next_status_{};
   std::uint64_t weights_ = 0;         ///< deform::SurfaceField::number() of the last weights
   web::Pictures pictures_;            ///< the textures of all versions of the model
   std::vector<std::byte> next_model_; ///< the message of the last prepared version

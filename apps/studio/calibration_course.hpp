@@ -18,9 +18,11 @@
 #include "calibrate/pose_advice.hpp"
 #include "calibrate/wearer_file.hpp"
 #include "studio/calibration_scene.hpp"
-#include "studio/form.hpp"
+#include "forms/form.hpp"
 
 namespace nendo::studio {
+
+using forms::Form;
 
 struct CalibrationOutcome {
   /// What was written; nothing: the wearer left, or discarded it.

@@ -96,7 +96,7 @@ void CalibrationScreen::draw_words(const viewer::SceneWindow& window) const {
                      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
                          ImGuiWindowFlags_NoNav);
   ImGui::PushFont(viewer::large_font());
-  WindowForm form;
+  viewer::WindowForm form;
   form.text(words.instruction);
   form.text(words.state, words.warns ? Form::Tone::warning : Form::Tone::faint);
   ImGui::PopFont();
@@ -139,7 +139,7 @@ void CalibrationScreen::draw_ring(const viewer::SceneWindow& window) const {
   if (share <= 0.0F) return;
   constexpr auto turn = 2.0F * std::numbers::pi_v<float>;
   const ImU32 colour =
-      course_.picture().warns ? ImGui::GetColorU32(viewer::warning()) : success_colour();
+      course_.picture().warns ? ImGui::GetColorU32(viewer::warning()) : viewer::success_colour();
   if (share >= 1.0F) return list.AddCircle(middle, radius, colour, segments, width);
   list.PathArcTo(middle, radius, -turn / 4.0F, -turn / 4.0F + share * turn, segments);
   list.PathStroke(colour, 0, width);

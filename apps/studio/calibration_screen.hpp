@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "studio/calibration_course.hpp"
-#include "studio/window_form.hpp"
 #include "viewer/scene_window.hpp"
+#include "viewer/window_form.hpp"
 
 namespace nendo::studio {
 
@@ -34,7 +34,7 @@ private:
 
   CalibrationCourse course_;
   HandPainter painter_;
-  WindowForm form_;
+  viewer::WindowForm form_;
   render::Camera camera_;
   HostTime drawn_{}; ///< the previous picture
 };

@@ -15,7 +15,7 @@ void add(const ShownHand& hand, Side side, PageFigures& figures) {
 
 } // namespace
 
-Result<Wish> PageCalibration::update(PageForm& form, PageFigures& figures) {
+Result<Wish> PageCalibration::update(web::PageForm& form, PageFigures& figures) {
   form.part("course");
   if (!course_) {
     const auto glove = visit_.glove();

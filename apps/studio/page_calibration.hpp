@@ -7,9 +7,11 @@
 
 #include "studio/calibration_visit.hpp"
 #include "studio/page_figures.hpp"
-#include "studio/page_form.hpp"
+#include "web/page_form.hpp"
 
 namespace nendo::studio {
+
+using forms::Form;
 
 class PageCalibration {
 public:
@@ -17,7 +19,7 @@ public:
 
   /// Describes the controls and the hands. Returns Go to the start when it is over. Errors: those
   /// of open_glove() and of the course.
-  Result<Wish> update(PageForm& form, PageFigures& figures);
+  Result<Wish> update(web::PageForm& form, PageFigures& figures);
   const std::string& learns_for() const noexcept {
     return visit_.learns_for();
   } ///< as CalibrationVisit

@@ -105,7 +105,7 @@ Result<void> PageReplay::play_on() {
   return {};
 }
 
-void PageReplay::take_controls(PageForm& form) {
+void PageReplay::take_controls(web::PageForm& form) {
   const commands::Row& play = commands::row_of(commands::EditCommand::play);
   const commands::Row& to_begin = commands::row_of(commands::EditCommand::to_begin);
   const double duration_s = opened_->take.duration_s;
@@ -120,7 +120,7 @@ void PageReplay::take_controls(PageForm& form) {
     go_to(static_cast<double>(time_s));
 }
 
-Result<Wish> PageReplay::update(PageForm& form) {
+Result<Wish> PageReplay::update(web::PageForm& form) {
   form.part("timeline");
   if (file_.empty()) {
     form.text("Record while the hands shape: t begins, t again ends. The recording then opens "

@@ -9,12 +9,14 @@
 
 #include <nendo/flow/frame.hpp>
 
-#include "studio/page_form.hpp"
 #include "studio/wish.hpp"
 #include "takes/take.hpp"
+#include "web/page_form.hpp"
 #include "web/server.hpp"
 
 namespace nendo::studio {
+
+using forms::Form;
 
 class PageReplay {
 public:
@@ -27,7 +29,7 @@ public:
 
   /// Plays on, and describes the controls. Takes at most some 20 ms. Returns what was clicked.
   /// Errors: those of takes::read_take().
-  Result<Wish> update(PageForm& form);
+  Result<Wish> update(web::PageForm& form);
 
 private:
   struct Opened {
@@ -35,7 +37,7 @@ private:
     std::unique_ptr<takes::FrameSource> frames;
   };
   static Result<Opened> opened(const std::string& file);
-  void take_controls(PageForm& form);
+  void take_controls(web::PageForm& form);
   void go_to(double time_s);
   Error no_frame() const;
   Result<void> play_on();

@@ -11,7 +11,7 @@ namespace nendo::studio {
 using session::Asks;
 using session::RunStatus;
 
-Wish describe_bar(PageForm& form, Screen now, const std::string& file) {
+Wish describe_bar(web::PageForm& form, Screen now, const std::string& file) {
   Wish wish;
   form.part("bar");
   form.lines_of(0);
@@ -25,7 +25,7 @@ Wish describe_bar(PageForm& form, Screen now, const std::string& file) {
 }
 
 void PageRun::update(const RunStatus& status, Asks& asks) {
-  form_.begin(server_.next_input());
+  form_.begin(server_.next_input(web::FormKind::screen));
   const bool is_modified = status.saving->is_modified(status.frame);
   follow_recording(status);
   const Screen now = replay_                           ? Screen::timeline
@@ -45,7 +45,7 @@ void PageRun::update(const RunStatus& status, Asks& asks) {
   if (saves_first_ && is_saved) leave(asks);
   if (replay_) show_replay(status, asks);
   if (is_wish(waiting_)) ask(asks);
-  server_.set_form(form_.message(replay_ ? "timeline" : "shaping"));
+  server_.set_form(web::FormKind::screen, form_.message(replay_ ? "timeline" : "shaping"));
 }
 
 void PageRun::follow_recording(const RunStatus& status) {

@@ -7,15 +7,17 @@
 #include <string>
 
 #include "session/observer.hpp"
-#include "studio/page_form.hpp"
 #include "studio/page_replay.hpp"
 #include "studio/wish.hpp"
+#include "web/page_form.hpp"
 #include "web/server.hpp"
 
 namespace nendo::studio {
 
+using forms::Form;
+
 /// Describes the tabs, and the name of the file. Returns what was clicked.
-Wish describe_bar(PageForm& form, Screen now, const std::string& file);
+Wish describe_bar(web::PageForm& form, Screen now, const std::string& file);
 
 class PageRun final : public session::Observer {
 public:
@@ -41,7 +43,7 @@ private:
   void leave(session::Asks& asks);
 
   web::Server& server_;
-  PageForm form_;
+  web::PageForm form_;
   std::string file_;
   bool asks_to_save_;
   bool is_settled_ = false;

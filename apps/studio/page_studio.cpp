@@ -12,11 +12,11 @@
 #include "studio/opened_files.hpp"
 #include "studio/page_calibration.hpp"
 #include "studio/page_figures.hpp"
-#include "studio/page_form.hpp"
 #include "studio/page_replay.hpp"
 #include "studio/page_run.hpp"
 #include "studio/start_choices.hpp"
 #include "studio/studio_flow.hpp"
+#include "web/page_form.hpp"
 
 namespace nendo::studio {
 namespace {
@@ -66,7 +66,7 @@ private:
   }
 
   void show_one() {
-    form_.begin(server_->next_input());
+    form_.begin(server_->next_input(web::FormKind::screen));
     follow_seen(describe_bar(form_, screen(), {}));
     show_dialog();
     const Screen now = screen(); // the bar and the dialog may lead to another one
@@ -76,7 +76,8 @@ private:
     if (now == Screen::start) show_start(figures);
     server_->set_figures(figures.message());
     if (form_.has_new_pictures()) server_->set_pictures(form_.pictures());
-    server_->set_form(form_.message(screen_names[static_cast<std::size_t>(now)]));
+    server_->set_form(web::FormKind::screen,
+                      form_.message(screen_names[static_cast<std::size_t>(now)]));
     if (const auto file = server_->take_file()) open_received(*file);
   }
 
@@ -172,7 +173,7 @@ private:
   }
 
   std::shared_ptr<web::Server> server_;
-  PageForm form_;
+  web::PageForm form_;
   std::unique_ptr<StartChoices> start_;
   std::unique_ptr<PageReplay> replay_;
   std::unique_ptr<PageCalibration> calibration_;

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "render/scene_frame.hpp"
-#include "studio/form.hpp"
+#include "forms/form.hpp"
 #include "studio/glove_board.hpp"
 #include "studio/model_gallery.hpp"
 #include "studio/wish.hpp"
 
 namespace nendo::studio {
+
+using forms::Form;
 
 /// What the command line says about the hands.
 struct StartOptions {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "studio/start_choices.hpp"
-#include "studio/window_form.hpp"
 #include "viewer/scene_window.hpp"
+#include "viewer/window_form.hpp"
 
 namespace nendo::studio {
 
@@ -23,7 +23,7 @@ public:
 
 private:
   StartChoices choices_;
-  WindowForm ways_, hands_;
+  viewer::WindowForm ways_, hands_;
 };
 
 } // namespace nendo::studio

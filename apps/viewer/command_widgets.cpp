@@ -80,10 +80,7 @@ bool row_button(const commands::Row& row, const commands::State& now, float widt
 }
 
 void show_help(const commands::Row& row, const commands::State& now) {
-  const char* const refusal = row.refusal_in(now);
-  std::string text(row.help);
-  if (refusal != nullptr) text.append("\n").append(refusal);
-  show_help(row.name, text);
+  show_text(commands::help_of(row, now));
 }
 
 void edit_buttons(commands::Buttons group, const commands::EditFacts& now, float width,

@@ -147,31 +147,27 @@ bool section(std::string_view name, std::string_view help, bool is_open_at_first
   return is_open;
 }
 
-bool one_of(std::span<const Choice> choices, std::size_t& chosen, std::size_t in_line,
-            Picture picture) {
-  bool changed = false;
-  const float width = share_of_line(in_line);
-  const float high = picture != nullptr ? em(2.2F) : 0.0F;
+bool picture_button(std::string_view name, const forms::LinePicture* picture, float width,
+                    bool is_chosen) {
+  if (picture == nullptr) return button(name, width, true, is_chosen);
+  const float high = em(2.2F);
+  ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.5F, 1.0F));
+  const bool pressed = draw_button(name, ImVec2(width, ImGui::GetFrameHeight() + high), is_chosen);
+  ImGui::PopStyleVar();
   const ImVec2 pad = ImGui::GetStyle().FramePadding;
-  for (std::size_t at = 0; at < choices.size(); ++at) {
-    if (at % in_line != 0) ImGui::SameLine();
-    const bool is_chosen = at == chosen;
-    ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.5F, 1.0F));
-    const bool pressed =
-        draw_button(choices[at].name, ImVec2(width, ImGui::GetFrameHeight() + high), is_chosen);
-    ImGui::PopStyleVar();
-    if (picture != nullptr) {
-      const ImVec2 low = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
-      picture(*ImGui::GetWindowDrawList(), {low.x + pad.x, low.y + pad.y},
-              {end.x - pad.x, low.y + pad.y + high}, at,
-              is_chosen ? chosen_text : ImGui::GetColorU32(ImGuiCol_Text));
-    }
-    show_text(choices[at].help);
-    if (!pressed) continue;
-    changed = changed || !is_chosen;
-    chosen = at;
+  const ImVec2 low = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
+  const ImU32 colour = is_chosen ? chosen_text : ImGui::GetColorU32(ImGuiCol_Text);
+  std::vector<ImVec2> points;
+  for (const auto& line : *picture) {
+    points.clear();
+    for (const Eigen::Vector2d& place : line)
+      points.push_back(
+          {low.x + pad.x + static_cast<float>(place.x()) * (end.x - low.x - 2.0F * pad.x),
+           low.y + pad.y + static_cast<float>(1.0 - place.y()) * high});
+    ImGui::GetWindowDrawList()->AddPolyline(points.data(), static_cast<int>(points.size()), colour,
+                                            0, 1.2F * scale());
   }
-  return changed;
+  return pressed;
 }
 
 bool bar_field(std::string_view name, float& value, float min, float max, const char* format,

@@ -9,8 +9,7 @@
 
 #include <Eigen/Core>
 
-struct ImDrawList;
-struct ImVec2;
+#include "forms/setting_pictures.hpp"
 
 namespace nendo::viewer {
 
@@ -44,17 +43,9 @@ bool check(std::string_view name, bool& value);
 /// A header that opens and closes what follows it. Returns whether it is open.
 bool section(std::string_view name, std::string_view help, bool is_open_at_first);
 
-struct Choice {
-  std::string_view name;
-  std::string help; ///< its tooltip
-};
-/// Draws the choice of that number into a rectangle.
-using Picture = void (*)(ImDrawList& list, ImVec2 low, ImVec2 high, std::size_t at,
-                         unsigned colour);
-/// Buttons in lines of `in_line`, of which one is chosen, with pictures above their names; null:
-/// names alone.
-bool one_of(std::span<const Choice> choices, std::size_t& chosen, std::size_t in_line,
-            Picture picture = nullptr);
+/// A button with lines above its name, stretched to its width; null: a plain button.
+bool picture_button(std::string_view name, const forms::LinePicture* picture, float width,
+                    bool is_chosen);
 
 /// A number that is dragged, typed after a double click, or changed by the wheel with ctrl;
 /// `format` says what it is. Width 0: the rest of the line.

@@ -32,7 +32,7 @@ LiveWindow::~LiveWindow() = default;
 void LiveWindow::begin(const deform::BlockLayout& layout, const render::SceneBuilder& builder,
                        const flow::LoopSettings& settings) {
   set_model(layout, builder);
-  panel_->follow_settings(settings);
+  panel_->pending.follow(settings);
   holds_ = {};
 }
 
@@ -53,7 +53,7 @@ Commands LiveWindow::show(const flow::Frame& frame, bool fresh, const Gauges& ga
   }
   window_->set_parts_in_reach(gauges.parts, frame.parts.in_reach);
   set_hands(frame, holds_, scene_frame_);
-  if (frame.ticks_run > 0) panel_->follow_settings(frame.settings);
+  if (frame.ticks_run > 0) panel_->pending.follow(frame.settings);
   window_->leave_left(panel_->covered_px());
   window_->leave_below(static_cast<int>(status_bar_height()));
   window_->begin_picture(scene_frame_, frame.ticks_run > 0); // before, no hand is there

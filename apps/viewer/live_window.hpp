@@ -12,6 +12,7 @@
 #include <nendo/flow/frame.hpp>
 
 #include "commands/commands.hpp"
+#include "forms/run_panel.hpp"
 #include "viewer/picture_times.hpp"
 #include "viewer/pointing.hpp"
 #include "viewer/puppet_tool.hpp"
@@ -24,8 +25,7 @@ struct Gauges {
   std::string model;        ///< the model's name
   double rate_hz = 0.0;     ///< the requested rate
   std::size_t vertices = 0; ///< the number of the model's vertices
-  /// Lines about the devices of each hand, by flow::Placement::index_of(side).
-  std::array<std::vector<std::string>, 2> devices;
+  forms::DeviceLines devices;
   std::shared_ptr<const deform::ModelParts>
       parts{}; ///< those of the frame's model; null: not in use
   commands::RunFacts facts{};

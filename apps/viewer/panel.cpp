@@ -8,7 +8,6 @@
 
 #include <nendo/flow/setting.hpp>
 
-#include "viewer/command_widgets.hpp"
 #include "viewer/controls.hpp"
 #include "viewer/puppet_tool.hpp"
 #include "viewer/status_bar.hpp"
@@ -16,8 +15,6 @@
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
-
-using flow::Request;
 
 namespace {
 
@@ -27,26 +24,6 @@ constexpr const char* mouse_words =
     "while a puppet is edited, a click places a point, a drag of a point sets where it goes,\n"
     "with shift how it turns, the wheel over one how far it reaches";
 
-/// Returns the bends of the joints in degrees, thumb to little finger.
-std::vector<float> bends_of(const hand::JointAngles& angles) {
-  std::vector<float> bends;
-  for (std::size_t at = 0; at < hand::angle_count; ++at)
-    if (const hand::Angle angle = hand::angle_at(at); name_of(angle).ends_with("flexion"))
-      bends.push_back(static_cast<float>(to_degrees(angles[angle])));
-  return bends;
-}
-
-void chart(const char* name, const char* help, const Strip& strip, const char* unit) {
-  char words[64];
-  const float most = *std::max_element(strip.begin(), strip.end());
-  std::snprintf(words, sizeof words, "%s, most %.2f %s", name, static_cast<double>(most), unit);
-  ImGui::PushID(name);
-  ImGui::PlotLines("##chart", strip.data(), static_cast<int>(strip.size()), 0, words, 0.0F,
-                   std::max(1.0F, most), ImVec2(ImGui::GetContentRegionAvail().x, em(3.0F)));
-  ImGui::PopID();
-  show_text(help);
-}
-
 /// Returns whether the window is wide enough for a panel at its right.
 bool is_wide() {
   return ImGui::GetIO().DisplaySize.x > em(60.0F);
@@ -54,157 +31,41 @@ bool is_wide() {
 
 } // namespace
 
-void Strip::add(float value) noexcept {
-  std::shift_left(begin(), end(), 1);
-  back() = value;
-}
-
 void LiveWindow::Panel::follow(const flow::Frame& frame, double rate_hz) {
   if (frame.ticks_run == 0) return;
   const auto ms = [](HostClock::duration time) {
     return static_cast<float>(1e3 * to_seconds(time));
   };
   late_ms.add(std::max(0.0F, ms(frame.woke - frame.scheduled)));
-  gap_ms.add(
+  uneven_ms.add(
       static_cast<float>(std::abs(static_cast<double>(ms(frame.since_last)) - 1e3 / rate_hz)));
 }
 
-void LiveWindow::Panel::buttons_of(commands::Buttons group, const commands::Situation& now) {
-  constexpr int in_line = 2;
-  const float width = share_of_line(in_line);
-  int column = 0;
-  for (const commands::Row& row : commands::table()) {
-    if (row.group != group || (row.is_shown != nullptr && !row.is_shown(now))) continue;
-    if (column++ % in_line != 0) ImGui::SameLine();
-    if (row_button(row, now, width)) ask(row, now);
-  }
+bool LiveWindow::Panel::has_history() const {
+  return !is_wide();
 }
 
-void LiveWindow::Panel::parts() {
+void LiveWindow::Panel::describe_look(forms::Form& form) {
   auto material = static_cast<std::size_t>(window.material());
-  if (choice_field("material", gl::material_names, material))
+  if (form.choice("material", commands::named("next material")->help, gl::material_names, material))
     window.material() = static_cast<gl::Material>(material);
-  show_help("next material");
-  const float left = ImGui::GetCursorPosX();
-  const float half = ImGui::GetContentRegionAvail().x / 2.0F;
-  std::size_t number = 0;
-  for (const auto& [command, is_shown] : window.switches()) {
-    if (number++ % 2 != 0) ImGui::SameLine(left + half);
-    check(command.substr(std::string_view("show ").size()), *is_shown);
-    show_help(command);
-  }
+}
+
+void LiveWindow::Panel::describe_painting(forms::Form& form) {
+  if (editor.brushes() && !editor.message().empty())
+    form.text(editor.message(), forms::Form::Tone::plain, "What painting has done, or what to do.");
+}
+
+bool LiveWindow::Panel::is_on(const commands::Row& row) const {
+  if (row.name == "paint masks") return editor.brushes();
+  const auto switches = window.switches();
+  const auto found =
+      std::ranges::find(switches, row.name, [](const auto& one) { return one.first; });
+  return found != switches.end() && *found->second;
 }
 
 int LiveWindow::Panel::covered_px() const {
   return folded ? 0 : static_cast<int>(em(gap_em + width_em));
-}
-
-void LiveWindow::Panel::follow_settings(const flow::LoopSettings& current) {
-  if (pending.follow(current)) settings.follow(pending);
-}
-
-/// Undoes, or does again, all steps up to the one with that number; 0: also the first of the list.
-void LiveWindow::Panel::go_to_step(const flow::StepList& list, std::size_t at) {
-  for (std::size_t step = list.undoable + (list.in_hand ? 1 : 0); step > at; --step)
-    commands.emplace_back(Request::undo);
-  for (std::size_t step = list.undoable; step < at; ++step)
-    commands.emplace_back(Request::redo);
-}
-
-void LiveWindow::Panel::history(const flow::Frame& frame) {
-  if (!section("History", "The steps so far; a click goes to one.", true)) return;
-  const flow::StepList& list = frame.steps;
-  const std::size_t hidden =
-      frame.undo_steps - std::min<std::uint64_t>(frame.undo_steps, list.undoable);
-  ImGui::BeginChild("steps", ImVec2(0.0F, em(7.0F)), true);
-  for (std::size_t at = 0; at <= list.count; ++at) {
-    char words[48];
-    if (at == 0) {
-      std::snprintf(words, sizeof words, "%s", hidden > 1 ? "earlier" : "the beginning");
-    } else {
-      const flow::Step& step = list.steps[at - 1];
-      const auto seconds = static_cast<int>(step.at_s);
-      std::snprintf(words, sizeof words, "%d:%02d  %s", seconds / 60, seconds % 60,
-                    std::string(name_of(step.kind)).c_str());
-    }
-    ImGui::PushID(static_cast<int>(at));
-    const bool is_undone = at > list.undoable;
-    if (is_undone)
-      ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
-    const bool is_present = at == list.undoable;
-    if (ImGui::Selectable(words, is_present)) go_to_step(list, at);
-    note_control("step " + std::to_string(at), words);
-    show_text("Undoes, or does again, all steps up to here.");
-    if (is_present && std::exchange(history_shown, list.version) != list.version)
-      ImGui::SetScrollHereY(0.5F);
-    if (is_undone) ImGui::PopStyleColor();
-    ImGui::PopID();
-  }
-  ImGui::EndChild();
-}
-
-void LiveWindow::Panel::clay(const flow::Frame& frame) {
-  const flow::ClayState& clay = frame.clay;
-  ImGui::Text("touches at %u places, %.3f mm deep", clay.touching, clay.penetration_mm);
-  if (!(clay.first_volume > 0.0)) {
-    ImGui::TextWrapped("volume not kept: no closed surface");
-    return;
-  }
-  ImGui::Text("volume %s, at first %s", volume_text(frame, clay.volume).c_str(),
-              volume_text(frame, clay.first_volume).c_str());
-}
-
-void LiveWindow::Panel::timing(const flow::Frame& frame) const {
-  ImGui::TextWrapped(
-      "%llu ticks, %llu commits, %llu undone", static_cast<unsigned long long>(frame.ticks_run),
-      static_cast<unsigned long long>(frame.commits), static_cast<unsigned long long>(frame.undos));
-  chart("late", "How late ticks began.", late_ms, "ms");
-  chart("uneven", "How much the time between ticks differed from the rate.", gap_ms, "ms");
-  chart("picture", "How long pictures of this window took.", pictures_ms, "ms");
-}
-
-void LiveWindow::Panel::hands(const flow::Frame& frame, const Gauges& gauges) {
-  for (const Side side : {Side::left, Side::right}) {
-    const std::size_t slot = flow::Placement::index_of(side);
-    const auto& hand = frame.hands[slot];
-    if (!hand.present) continue;
-    ImGui::PushTextWrapPos(0.0F);
-    for (const std::string& line : gauges.devices[slot])
-      ImGui::TextUnformatted(line.c_str());
-    ImGui::PopTextWrapPos();
-    const auto bends = bends_of(hand.angles);
-    ImGui::PushID(static_cast<int>(slot));
-    ImGui::PlotHistogram("##joints", bends.data(), static_cast<int>(bends.size()), 0,
-                         "thumb to little, degrees", 0.0F, 110.0F,
-                         ImVec2(ImGui::GetContentRegionAvail().x, em(3.4F)));
-    ImGui::PopID();
-    show_text("How far joints are bent: two of the thumb, three of each finger.");
-  }
-}
-
-void LiveWindow::Panel::sections(const flow::Frame& frame, const Gauges& gauges) {
-  const commands::Situation now{frame, gauges.facts};
-  const auto draw_puppet = [&] {
-    if (section("Puppet", "What each finger moves, as points on the model.", true)) puppet(frame);
-  };
-  // While a puppet is edited, nothing is needed as much as this.
-  const bool edits = editor.edits_puppet();
-  if (edits) draw_puppet();
-  SettingControls::draw_modes(pending.now);
-  buttons_of(commands::Buttons::hands, now);
-  if (section("Tool", "The settings that have an effect in this mode.", true)) {
-    settings.draw(pending.now);
-    masks(now);
-  }
-  if (!is_wide()) history(frame);
-  if (section("Model", "Changes of the model itself, which undo reverts.", false))
-    buttons_of(commands::Buttons::model, now);
-  if (!edits) draw_puppet();
-  if (frame.clay.is_clay && section("Contact", "Where the hands touch the clay.", true))
-    clay(frame);
-  if (section("View", "What is drawn besides the model.", false)) parts();
-  if (section("Gloves", "The devices of the hands, and their joints.", false)) hands(frame, gauges);
-  if (section("Timing", "How even the loop and the pictures are.", false)) timing(frame);
 }
 
 void LiveWindow::Panel::draw_tools(const flow::Frame& frame, const Gauges& gauges, float top) {
@@ -217,7 +78,7 @@ void LiveWindow::Panel::draw_tools(const flow::Frame& frame, const Gauges& gauge
       begin_pane(title.c_str(), {gap, top}, {0.0F, 0.0F}, {em(width_em), std::max(em(3.0F), high)},
                  ImGuiWindowFlags_NoNavInputs);
   folded = ImGui::IsWindowCollapsed();
-  if (open) sections(frame, gauges);
+  if (open) describe(tools_, {frame, gauges.facts}, gauges.devices);
   ImGui::End();
 }
 
@@ -225,7 +86,7 @@ void LiveWindow::Panel::draw_tools(const flow::Frame& frame, const Gauges& gauge
 void LiveWindow::Panel::draw_history(const flow::Frame& frame, float top) {
   begin_pane("history", {ImGui::GetIO().DisplaySize.x - em(gap_em), top}, {1.0F, 0.0F},
              {em(12.0F), em(20.0F)}, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoNav);
-  history(frame);
+  describe_history(history_, frame);
   ImGui::End();
 }
 
@@ -274,13 +135,7 @@ void LiveWindow::Panel::take(const commands::Row& row, const commands::Situation
   else if (!row.setting.empty())
     begin_gesture(row, now);
   else
-    execute(row.name);
-}
-
-void LiveWindow::Panel::ask(const commands::Row& row, const commands::Situation& now) {
-  const commands::Answer answer = commands::press(row, now, pending);
-  if (answer.command) commands.push_back(*answer.command);
-  note = answer.refusal != nullptr ? answer.refusal : "";
+    execute(row);
 }
 
 /// Returns the metres of a pixel at the model under the mouse or, beside it, at what the camera
@@ -335,7 +190,8 @@ void LiveWindow::Panel::begin_gesture(const commands::Row& row, const commands::
 }
 
 /// Executes a command that concerns the window alone.
-void LiveWindow::Panel::execute(std::string_view name) {
+void LiveWindow::Panel::execute(const commands::Row& row) {
+  const std::string_view name = row.name;
   window.execute(name);
   if (name == "fold panel") fold_asked = true;
   if (name == "edit puppet") editor.turn(!editor.is_on());

@@ -79,26 +79,8 @@ void LiveWindow::Panel::puppet_buttons() {
   show_help("save puppet");
 }
 
-void LiveWindow::Panel::masks(const commands::Situation& now) {
-  const commands::Row& symmetry = *commands::named("symmetry");
-  bool symmetric = symmetry.is_on_in(now);
-  if (check("symmetry", symmetric)) ask(symmetry, now);
-  show_help(symmetry, now);
-  if (editor.rig().puppet().is_played()) return; // whose masks are edited with it
-  ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x / 2.0F);
-  bool brushes = editor.brushes();
-  if (check("paint masks", brushes)) editor.toggle_brush();
-  show_help("paint masks", "Paint what stays; shift erases.");
-  const commands::Row& clear = *commands::named("mask clear");
-  if (row_button(clear, now, share_of_line(2))) ask(clear, now);
-  ImGui::SameLine();
-  const commands::Row& invert = *commands::named("mask invert");
-  if (row_button(invert, now, share_of_line(1))) ask(invert, now);
-  if (editor.brushes() && !editor.message().empty())
-    ImGui::TextWrapped("%s", editor.message().c_str());
-}
-
-void LiveWindow::Panel::puppet(const flow::Frame& frame) {
+void LiveWindow::Panel::describe_puppet(forms::Form& form, const flow::Frame& frame) {
+  if (!form.section("Puppet", "What each finger moves, as points on the model.", true)) return;
   const bool is_on = editor.edits_puppet();
   if (button(is_on ? "Play the puppet" : "Edit the puppet", share_of_line(1))) editor.turn(!is_on);
   show_help("edit puppet", "Click, bend a finger, drag: what each finger does.");

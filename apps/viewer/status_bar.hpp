@@ -8,8 +8,6 @@
 
 namespace nendo::viewer {
 
-/// Returns a volume in model units as text: "12.3 cm3".
-std::string volume_text(const flow::Frame& frame, double volume);
 /// Returns the bar's height in pixels.
 float status_bar_height();
 /// Draws the bar. Figures without space beside the message are left out, the last ones first. An

@@ -168,15 +168,19 @@ Result<ClientCommand> parse_command(std::string_view text) {
 
 Result<FormInput> parse_form_input(std::string_view text) {
   std::string_view value = text;
-  const bool is_form = cut(value, '\t') == "form";
+  const std::string_view form = cut(value, '\t');
   const std::string_view control = cut(value, '\t');
   const auto is_control_character = [](char c) {
     return static_cast<unsigned char>(c) < ' ' || c == '\x7F';
   };
-  if (!is_form || control.empty() || std::ranges::any_of(control, is_control_character) ||
+  const bool is_panel = form == "panel";
+  if ((!is_panel && form != "form") || control.empty() ||
+      std::ranges::any_of(control, is_control_character) ||
       std::ranges::any_of(value, is_control_character))
-    return Error{Errc::bad_input, "form: write the id of a control and its value, after tabs"};
-  return FormInput{std::string(control), std::string(value)};
+    return Error{Errc::bad_input,
+                 "form: write form or panel, the id of a control and its value, after tabs"};
+  return FormInput{std::string(control), std::string(value),
+                   is_panel ? FormKind::run : FormKind::screen};
 }
 
 namespace {
@@ -184,52 +188,6 @@ namespace {
 // A test sees that no text of the tables has a quotation mark, a backslash or a "<".
 std::string js_text(std::string_view text) {
   return '"' + std::string(text) + '"';
-}
-
-std::string modes_of(const flow::SettingText& setting) {
-  std::string list = ", modes: [";
-  for (std::uint8_t number = 0; number < flow::mode_count; ++number)
-    if (const auto mode = static_cast<flow::Mode>(number); setting.works_in(mode))
-      list += js_text(name_of(mode)) + ',';
-  return list + "]";
-}
-
-/// Which values it has, by its kind.
-template <class T>
-std::string values_of(const flow::ChoiceSetting<T>& choice) {
-  return ", choices: " + js_text(choice.choices());
-}
-std::string values_of(const flow::SwitchSetting&) {
-  return ", choices: \"false or true\"";
-}
-std::string values_of(const flow::BrushesSetting&) {
-  return ", choices: " + js_text(deform::brush_words());
-}
-std::string limits(const flow::Range& range, std::string_view unit) {
-  return ", min: " + decimal_text(range.min) + ", max: " + decimal_text(range.max) +
-         ", unit: " + js_text(unit);
-}
-std::string values_of(const flow::FingersSetting& lengths) {
-  return limits(lengths.handy, lengths.unit);
-}
-std::string values_of(const flow::NumberSetting& number) {
-  std::string needs;
-  if (number.has_effect == flow::setting::is_filtered) needs = ", needs: \"filter\"";
-  if (number.has_effect == flow::setting::has_brush) needs = ", needs: \"brushes\"";
-  return limits(number.range, number.unit) + needs;
-}
-
-std::string_view group_name(commands::Buttons group) noexcept {
-  switch (group) {
-  case commands::Buttons::hands:
-    return "hands";
-  case commands::Buttons::model:
-    return "model";
-  case commands::Buttons::more:
-    return "more";
-  default:
-    return "";
-  }
 }
 
 } // namespace
@@ -242,37 +200,9 @@ std::string page_commands() {
     for (const std::string_view key : row.keys)
       if (!key.empty()) list += js_text(key) + ',';
     list += "], help: " + js_text(row.help) + ", button: " + js_text(row.button) +
-            ", buttonOn: " + js_text(row.button_on.empty() ? row.button : row.button_on) +
-            ", group: " + js_text(group_name(row.group)) +
-            ", isForRun: " + (row.is_for_run() ? "true" : "false") +
-            ", isSetting: " + (row.choose != nullptr ? "true" : "false") + " },";
+            ", isForRun: " + (row.is_for_run() ? "true" : "false") + " },";
   }
   return list + "\n]";
-}
-
-std::string page_settings() {
-  std::string list = "{";
-  for (const bool of_fingers : {true, false}) // what fingers do is changed most often
-    flow::for_each_setting([&](const auto& setting) {
-      using Described = std::decay_t<decltype(setting)>;
-      constexpr bool is_of_fingers = std::is_same_v<Described, flow::FingersSetting> ||
-                                     std::is_same_v<Described, flow::BrushesSetting>;
-      constexpr bool is_mode = std::is_same_v<Described, flow::ChoiceSetting<flow::Mode>>;
-      if (setting.option.empty() || is_of_fingers != of_fingers) return;
-      const commands::Row* const row = commands::row_changing(setting.name);
-      list += "\n  " + std::string(setting.name) + ": { label: " + js_text(setting.label) +
-              ", help: " + js_text(setting.tip.empty() ? setting.help : setting.tip) +
-              ", command: " + js_text(row != nullptr ? row->name : "") + modes_of(setting) +
-              values_of(setting) + ", isOfFingers: " + (is_of_fingers ? "true" : "false");
-      if (is_mode) {
-        list += ", labels: [";
-        for (const std::string_view label : flow::mode_labels)
-          list += js_text(label) + ',';
-        list += "]";
-      }
-      list += " },";
-    });
-  return list + "\n}";
 }
 
 std::string page_hints() {

@@ -39,25 +39,24 @@ using ClientCommand = std::variant<flow::Command, const commands::Row*, NamedSet
 /// bad_input (not a command, or a number out of range), in at most max_close_reason bytes.
 Result<ClientCommand> parse_command(std::string_view text);
 
-/// What a user did to a control of the form (PROTOCOL.md, message 12).
+/// The forms of a page (PROTOCOL.md, message 12): of a screen, of the run, and its status bar,
+/// which takes no input.
+enum class FormKind : std::uint8_t { screen, run, status };
+inline constexpr std::size_t form_kinds = 3;
+
+/// What a user did to a control of a form.
 struct FormInput {
   std::string control; ///< its id
   std::string value;   ///< the new value; empty for buttons
+  FormKind form = FormKind::screen;
 };
-/// Parses "form", an id and a value, separated by tabs. Error: bad_input, in at most
-/// max_close_reason bytes.
+/// Parses "form" or, for the run's, "panel", an id and a value, separated by tabs. Error:
+/// bad_input, in at most max_close_reason bytes.
 Result<FormInput> parse_form_input(std::string_view text);
 
-/// Returns the page's rows as a JavaScript array of objects with name, keys, help, button,
-/// buttonOn, group, isForRun and isSetting.
+/// Returns the page's rows as a JavaScript array of objects with name, keys, help, button and
+/// isForRun.
 std::string page_commands();
-
-/// Returns a JavaScript object with the settings by name, those that windows show, in their order.
-/// Each has label, help, the modes in which it works, the name of the command that changes it, or
-/// "", and whether each finger has its own value; numbers have min, max and unit, all others have
-/// choices as a list in prose. `needs` names a setting without whose other choices than the first
-/// it has no effect.
-std::string page_settings();
 
 /// Returns the hints for the first start as a JavaScript array of objects with keys and text.
 std::string page_hints();

@@ -27,13 +27,13 @@ SharedBytes shared_bytes(std::string_view text);
 /// The messages that each client gets when it connects and after changes.
 enum Fact : std::size_t {
   settings_fact,
-  history_fact,
   puppet_fact,
   clay_fact,
   wire_fact,
   commands_fact,
-  devices_fact,
-  form_fact,
+  form_fact, ///< and the next two, by FormKind
+  run_form_fact,
+  status_fact,
   figures_fact,
   fact_count
 };

@@ -135,8 +135,9 @@ void Server::set_settings(const flow::LoopSettings& settings) {
   set_fact(settings_fact, text_message(MessageType::settings, commands::text_of(settings)));
 }
 
-void Server::set_form(std::string_view json) {
-  set_fact(form_fact, text_message(MessageType::form, json));
+void Server::set_form(FormKind kind, std::string_view json) {
+  const auto number = static_cast<std::uint8_t>(kind);
+  set_fact(form_fact + number, text_message(MessageType::form, json, number));
 }
 
 void Server::set_figures(std::string_view json) {
@@ -148,9 +149,9 @@ void Server::set_pictures(Pictures pictures) {
   work_->inbox.pictures = std::move(pictures);
 }
 
-std::optional<FormInput> Server::next_input() {
+std::optional<FormInput> Server::next_input(FormKind kind) {
   const std::scoped_lock lock(work_->inbox.mutex);
-  auto& inputs = work_->inbox.inputs;
+  auto& inputs = work_->inbox.inputs[static_cast<std::size_t>(kind)];
   if (inputs.empty()) return std::nullopt;
   std::optional<FormInput> input(std::move(inputs.front()));
   inputs.pop_front();
@@ -168,7 +169,6 @@ void Server::set_commands(const commands::Situation& now) {
 
 void Server::follow(const flow::Frame& frame, const puppet::Rig* rig) {
   constexpr std::chrono::milliseconds period(33);
-  set_fact(history_fact, frame.steps.version, [&] { return message_of(frame.steps); });
   set_fact(puppet_fact, frame.puppet, [&] { return message_of(frame.puppet, rig); });
   Work::Inbox& inbox = work_->inbox;
   bool has_clay = frame.clay.is_clay || frame.parts.count > 0;
@@ -183,10 +183,6 @@ void Server::follow(const flow::Frame& frame, const puppet::Rig* rig) {
   }
   if (has_clay) set_fact(clay_fact, clay_message(frame));
   if (has_wire) set_fact(wire_fact, wire_message(frame));
-}
-
-void Server::set_devices(std::string_view lines) {
-  set_fact(devices_fact, text_message(MessageType::devices, lines));
 }
 
 ServerCounters Server::counters() const noexcept {
@@ -214,8 +210,9 @@ void Server::Work::present(Presented next, std::vector<std::byte> model, bool is
     next.model = shared_message(std::move(model));
     (is_beside ? inbox.beside : inbox.next) = std::move(next);
     if (!is_beside) {
-      // Another run counts its steps and puppets from the beginning.
-      inbox.facts[history_fact] = inbox.facts[puppet_fact] = nullptr;
+      // Another run counts its puppets from the beginning, and has its own controls.
+      for (const std::size_t fact : {puppet_fact, run_form_fact, status_fact})
+        inbox.facts[fact] = nullptr;
       inbox.pictures.reset(); // of the loop before
     }
   }
@@ -337,7 +334,8 @@ void Server::Work::send_report(HostTime now) {
     is_error = inbox.is_report_error;
   }
   if (text.empty()) return;
-  const SharedBytes message = shared_message(report_message(text, is_error));
+  const SharedBytes message =
+      shared_message(text_message(MessageType::report, text, is_error ? 1 : 0));
   for (Connection& client : connections_)
     if (client.is_page() && client.accepts_updates())
       client.send(Opcode::binary, message, false, now);

@@ -99,20 +99,19 @@ public:
   void set_settings(const flow::LoopSettings& settings);
   /// Sets which commands of the table are on, and the refusals of others.
   void set_commands(const commands::Situation& now);
-  /// Sets the frame's steps, the state of its clay, and its puppet; null: none. Notifies clients of
-  /// clay at most 30 times per second.
+  /// Sets the state of the frame's clay, and its puppet; null: none. Notifies clients of clay at
+  /// most 30 times per second.
   void follow(const flow::Frame& frame, const puppet::Rig* rig);
-  /// Sets the text of the devices message (PROTOCOL.md).
-  void set_devices(std::string_view lines);
-  /// Sets the controls that clients show (PROTOCOL.md, message 12). From then on the server takes
-  /// their input, and files to open.
-  void set_form(std::string_view json);
+  /// Sets the controls that clients show (PROTOCOL.md, message 12), until another run is presented
+  /// or, for a screen's, for good. From then on the server takes their input and, with a screen's,
+  /// files to open.
+  void set_form(FormKind kind, std::string_view json);
   /// Sets the hands that clients show without a run (PROTOCOL.md, message 13).
   void set_figures(std::string_view json);
   /// Replaces the pictures of the loop; present_beside() has its own.
   void set_pictures(Pictures pictures);
-  /// Returns the next input of the form, of all clients in order of arrival.
-  std::optional<FormInput> next_input();
+  /// Returns the next input of that form, of all clients in order of arrival.
+  std::optional<FormInput> next_input(FormKind kind);
   /// A file that a client wants to open.
   struct File {
     std::string name; ///< without a path

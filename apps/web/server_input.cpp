@@ -8,6 +8,7 @@
 
 #include <poll.h>
 
+#include "forms/setting_pictures.hpp"
 #include "web/client_commands.hpp"
 #include "web/server_work.hpp"
 #include "web/skin_message.hpp"
@@ -79,7 +80,7 @@ std::string page_head(std::size_t bytes, std::string_view nonce, std::string_vie
 std::string page_with(std::string_view nonce) {
   std::string text(page());
   for (const auto& [mark, by] :
-       {std::pair<std::string_view, std::string>{"NENDO-SETTINGS", page_settings()},
+       {std::pair<std::string_view, std::string>{"NENDO-PICTURES", forms::line_pictures_js()},
         {"NENDO-COMMANDS", page_commands()},
         {"NENDO-HINTS", page_hints()},
         {"NENDO-NONCE", std::string(nonce)}})
@@ -213,14 +214,16 @@ void Server::Work::handle_input(Connection& connection, const std::string& text,
   auto input = parse_form_input(text);
   if (!input) return connection.close(CloseCode::policy, now, input.error().message);
   const std::scoped_lock lock(inbox.mutex);
-  if (!inbox.facts[form_fact]) return;
+  const auto kind = static_cast<std::size_t>(input->form);
+  if (!inbox.facts[form_fact + kind]) return;
+  auto& inputs = inbox.inputs[kind];
   // A slider sends values faster than forms take them, and only its last one counts.
-  const bool is_newer = !inbox.inputs.empty() && !input->value.empty() &&
-                        inbox.inputs.back().control == input->control;
+  const bool is_newer =
+      !inputs.empty() && !input->value.empty() && inputs.back().control == input->control;
   if (is_newer)
-    inbox.inputs.back() = *std::move(input);
-  else if (inbox.inputs.size() < max_inputs)
-    inbox.inputs.push_back(*std::move(input));
+    inputs.back() = *std::move(input);
+  else if (inputs.size() < max_inputs)
+    inputs.push_back(*std::move(input));
 }
 
 void Server::Work::handle(Connection& connection, const std::string& text, HostTime now) {
@@ -232,7 +235,8 @@ void Server::Work::handle(Connection& connection, const std::string& text, HostT
     handle_foxglove(connection, text, now);
     return;
   }
-  if (text.starts_with("form")) return handle_input(connection, text, now);
+  if (text.starts_with("form") || text.starts_with("panel"))
+    return handle_input(connection, text, now);
   const auto command = parse_command(text);
   if (!command) {
     connection.close(CloseCode::policy, now, command.error().message);

@@ -67,9 +67,9 @@ public:
     bool is_report_error = false; ///< the newest report is one
     HostTime next_marks{};        ///< the earliest time of the next message about clay or a wire
     Facts facts;                  ///< messages; null until they are set
-    std::array<std::uint64_t, fact_count> versions{}; ///< the last versions of versioned facts
-    std::optional<Pictures> pictures;                 ///< set by set_pictures(), not taken yet
-    std::deque<FormInput> inputs;                     ///< at most max_inputs
+    std::array<std::uint64_t, fact_count> versions{};     ///< the last versions of versioned facts
+    std::optional<Pictures> pictures;                     ///< set by set_pictures(), not taken yet
+    std::array<std::deque<FormInput>, form_kinds> inputs; ///< at most max_inputs each
     std::optional<File> file;
     std::vector<Weights> weights; ///< oldest first
     std::uint64_t weights_in_use = 0;

@@ -144,17 +144,12 @@ UpdateHead head_of(const flow::Frame& frame) noexcept {
   return head;
 }
 
-std::vector<std::byte> text_message(MessageType type, std::string_view text) {
+std::vector<std::byte> text_message(MessageType type, std::string_view text, std::uint8_t kind) {
   std::vector<std::byte> message(text_head_bytes + text.size());
   message[0] = static_cast<std::byte>(type);
+  message[1] = static_cast<std::byte>(kind);
   const auto bytes = std::as_bytes(std::span(text));
   std::copy(bytes.begin(), bytes.end(), message.data() + text_head_bytes);
-  return message;
-}
-
-std::vector<std::byte> report_message(std::string_view text, bool is_error) {
-  std::vector<std::byte> message = text_message(MessageType::report, text);
-  message[1] = static_cast<std::byte>(is_error ? 1 : 0);
   return message;
 }
 
@@ -188,21 +183,6 @@ std::vector<std::byte> message_of(std::uint32_t number, const puppet::Rig* rig) 
   for (const puppet::Mask& mask : masks) {
     out.put(Eigen::Vector3f(mask.at.cast<float>()));
     out.put(as_float(mask.radius));
-  }
-  return message;
-}
-
-std::vector<std::byte> message_of(const flow::StepList& steps) {
-  std::vector<std::byte> message(history_head_bytes + history_step_bytes * steps.count);
-  WireWriter out(message);
-  out.put(static_cast<std::uint8_t>(MessageType::history));
-  out.put(static_cast<std::uint8_t>(steps.count));
-  out.put(static_cast<std::uint8_t>(steps.undoable));
-  out.put(std::uint8_t{0});
-  out.put(std::uint32_t{0});
-  for (const flow::Step& step : steps.all()) {
-    out.put(static_cast<std::uint32_t>(step.kind));
-    out.put(step.at_s);
   }
   return message;
 }

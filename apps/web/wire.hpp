@@ -23,12 +23,10 @@ enum class MessageType : std::uint8_t {
   update = 2,
   report = 3,
   settings = 4,
-  history = 5,
   weights = 6,
   puppet = 7,
   clay = 8,
   commands = 9,
-  devices = 10,
   wire = 11,
   form = 12,
   figures = 13
@@ -74,7 +72,7 @@ static_assert(sizeof(ShapeHead) == 16);
 /// The head of the model message, in PROTOCOL.md's order and without gaps.
 struct ModelHead {
   char magic[8]{'N', 'E', 'N', 'D', 'O', 'W', 'E', 'B'};
-  std::uint32_t version = 8;
+  std::uint32_t version = 9;
   std::uint32_t vertices = 0;
   std::uint32_t triangles = 0;
   std::uint32_t name_bytes = 0;
@@ -190,11 +188,9 @@ private:
 float as_float(double value) noexcept;
 
 UpdateHead head_of(const flow::Frame& frame) noexcept;
-/// Returns a text message: settings, commands, devices, form or figures. Allocates.
-std::vector<std::byte> text_message(MessageType type, std::string_view text);
-std::vector<std::byte> report_message(std::string_view text, bool is_error);
-/// Returns the history message. Allocates.
-std::vector<std::byte> message_of(const flow::StepList& steps);
+/// Returns a text message: a report, settings, commands, a form or figures. `kind` is its
+/// second byte. Allocates.
+std::vector<std::byte> text_message(MessageType type, std::string_view text, std::uint8_t kind = 0);
 /// Returns the message with the puppet's functions, or with fingertips' masks; null: neither.
 /// Allocates.
 std::vector<std::byte> message_of(std::uint32_t number, const puppet::Rig* rig);

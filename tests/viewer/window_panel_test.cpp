@@ -14,7 +14,6 @@
 #include "viewer/live_window.hpp"
 #include "viewer/pointing.hpp"
 #include "viewer/puppet_editor.hpp"
-#include "viewer/setting_pictures.hpp"
 
 namespace window_panel_test {
 
@@ -512,43 +511,6 @@ TEST_SUITE("window_panel" * doctest::skip(!test::restraint_is_counted)) {
       CHECK(person.hold(input).size() == (is_same ? 0 : 1));
       CHECK(person.window->settings().brush_strength == doctest::Approx(strength));
       person.set(person.window->settings());
-    }
-  }
-
-  TEST_CASE("the pictures of brushes are what brushes do") {
-    struct Extent {
-      double low = 0.0, high = 0.0, spread = 0.0;
-    };
-    const auto extent = [](deform::Brush brush) {
-      Extent found;
-      for (const auto& line : lines_of(brush))
-        for (const Vector3d& at : line) {
-          found.low = std::min(found.low, at.z());
-          found.high = std::max(found.high, at.z());
-          found.spread += at.head<2>().norm();
-        }
-      return found;
-    };
-    const Extent plain = extent(deform::Brush::none);
-    CHECK(plain.high - plain.low == 0.0);
-    CHECK(extent(deform::Brush::pull).high == doctest::Approx(0.6));
-    CHECK(extent(deform::Brush::inflate).high > 0.3);
-    CHECK(extent(deform::Brush::inflate).low > -0.05);
-    CHECK(extent(deform::Brush::push).low < -0.3);
-    CHECK(extent(deform::Brush::push).high < 0.05);
-    CHECK(extent(deform::Brush::pinch).spread < 0.98 * plain.spread);
-    CHECK(extent(deform::Brush::scale).spread > 1.02 * plain.spread);
-    CHECK(std::abs(extent(deform::Brush::twist).spread / plain.spread - 1.0) < 0.02);
-    for (const auto brush : {deform::Brush::smooth, deform::Brush::flatten}) { // and not far away
-      const auto& row = lines_of(brush)[2];
-      const auto height = [&](std::size_t from) {
-        const auto [low, high] =
-            std::minmax_element(row.begin() + static_cast<std::ptrdiff_t>(from),
-                                row.begin() + static_cast<std::ptrdiff_t>(from + 9),
-                                [](const auto& a, const auto& b) { return a.z() < b.z(); });
-        return high->z() - low->z();
-      };
-      CHECK(height(20) < 0.6 * height(0));
     }
   }
 

@@ -299,6 +299,10 @@ TEST_SUITE("client_commands") {
     const auto typed = parse_form_input("form\tfile name\tmy scan.obj");
     REQUIRE(typed);
     CHECK(typed->value == "my scan.obj");
+    CHECK(typed->form == FormKind::screen);
+    const auto moved = parse_form_input("panel\tradius\t12");
+    REQUIRE(moved);
+    CHECK(moved->form == FormKind::run);
     for (const auto* wrong : {"form", "form\t", "form\t\tvalue", "form x", "formula\ta\tb",
                               "form\ta\tb\tc", "form\ta\tb\nc"}) {
       CAPTURE(wrong);

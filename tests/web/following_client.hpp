@@ -15,6 +15,7 @@
 #include <Eigen/Geometry>
 
 #include <nendo/deform/mesh.hpp>
+#include <nlohmann/json.hpp>
 
 namespace nendo::test {
 
@@ -24,7 +25,7 @@ public:
     Bytes in{model};
     const std::string magic(reinterpret_cast<const char*>(model.data()), 8);
     in.at = 8;
-    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 8;
+    good = magic == "NENDOWEB" && in.take<std::uint32_t>() == 9;
     const auto vertices = in.take<std::uint32_t>();
     const auto triangles = in.take<std::uint32_t>();
     const auto name_bytes = in.take<std::uint32_t>();
@@ -66,12 +67,12 @@ public:
     if (type == 2) take_update(in);
     if (type == 3) take_report(in);
     if (type == 4) take_settings(in);
-    if (type == 5) take_steps(in);
     if (type == 6) take_weights(in);
     if (type == 7) take_puppet(in);
     if (type == 9) take_commands(in);
-    if (type == 10) devices = take_text(in);
-    return type >= 1 && type <= 10 && type != 8 && in.at == message.size();
+    if (type == 12) take_form(in);
+    constexpr std::array known{1, 2, 3, 4, 6, 7, 9, 12};
+    return std::ranges::find(known, type) != known.end() && in.at == message.size();
   }
 
   /// The shape, in the mesh's order and units.
@@ -109,9 +110,15 @@ public:
   int settings_messages = 0;
   std::set<std::string> on;
   std::map<std::string, std::string> refusals;
-  // Of the latest message of steps.
-  std::vector<std::pair<std::uint32_t, float>> steps; ///< kind, and seconds
-  std::size_t undoable = 0;
+  /// The latest forms: of a screen, of the run, and of its status bar.
+  std::array<nlohmann::json, 3> forms;
+  /// Returns the control of the run's panel with that id; null: there is none.
+  nlohmann::json control(const std::string& id) const {
+    for (const auto& part : forms[1].value("parts", nlohmann::json::array()))
+      for (const auto& one : part["controls"])
+        if (one.value("id", "") == id) return one;
+    return {};
+  }
   // Of the latest puppet message.
   std::uint32_t puppet = 0;
   std::vector<std::array<float, 4>> masks;                    ///< x, y, z, radius
@@ -134,7 +141,6 @@ public:
   bool symmetric = false, is_puppet = false;
   std::string report;                ///< the last report of the server
   bool is_error = false;             ///< the last report was an error
-  std::string devices;               ///< the text of the last devices message
   std::uint64_t implied_centres = 0; ///< centres that were left out
 
 private:
@@ -202,14 +208,11 @@ private:
     }
   }
 
-  void take_steps(Bytes& in) {
-    steps.resize(in.take<std::uint8_t>());
-    undoable = in.take<std::uint8_t>();
-    in.at += 5;
-    for (auto& [kind, at_s] : steps) {
-      kind = in.take<std::uint32_t>();
-      at_s = in.take<float>();
-    }
+  void take_form(Bytes& in) {
+    const auto kind = std::to_integer<std::size_t>(in.bytes[1]);
+    const std::string text = take_text(in);
+    good = good && kind < forms.size() && nlohmann::json::accept(text);
+    if (good) forms[kind] = nlohmann::json::parse(text);
   }
 
   void take_puppet(Bytes& in) {

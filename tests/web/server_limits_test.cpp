@@ -67,7 +67,7 @@ TEST_SUITE("server_limits") {
     REQUIRE(client.open_socket() == 101);
     constexpr int last = 299;
     for (int number = 0; number <= last; ++number) {
-      server->set_form(std::to_string(number) + std::string(4096, ' '));
+      server->set_form(web::FormKind::screen, std::to_string(number) + std::string(4096, ' '));
       std::this_thread::sleep_for(milliseconds(2)); // the server's thread has taken it
     }
     int forms = 0;
@@ -264,7 +264,7 @@ TEST_SUITE("server_limits") {
     ServerLimits limits = generous();
     limits.max_connections = 4;
     const auto server = nendo::test::open_server(limits);
-    server->set_form("{}");
+    server->set_form(web::FormKind::screen, "{}");
     WebClient sender(*server);
     sender.send("POST " + sender.with_token("/open") +
                 "&name=a.obj HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 2\r\n\r\nv");

@@ -47,19 +47,56 @@ TEST_SUITE("server") {
     CHECK(server->url() == "http://" + server->endpoint().authority() + "/#" + server->token());
   }
 
-  TEST_CASE("a client gets the lines about gloves and trackers at once, and after each change") {
+  TEST_CASE("a client gets the forms of a run at once, and after each change, until it has ended") {
+    using web::FormKind;
     Served served(flow::Mode::type1);
-    const std::string first = "left\tleft glove: sim: a hand\t90.0/s, 8 ms old\n";
-    served.server->set_devices(first);
     served.begin();
+    served.server->set_form(FormKind::run, R"({"parts":[]})");
+    served.server->set_form(FormKind::status, R"({"parts":[1]})");
     Viewer viewer(served);
-    CHECK(viewer.follow_until([&] { return viewer.updates > 0 && viewer.devices == first; }));
+    CHECK(viewer.follow_until([&] { return viewer.updates > 0 && viewer.forms[2].is_object(); }));
     CHECK(viewer.held);
-    const std::string second = first + "left\tleft wrist: sim:orbit?station=1: a tracker\tlost\n";
-    served.server->set_devices(second);
-    CHECK(viewer.follow_until([&] { return viewer.devices == second; }));
+    CHECK(viewer.forms[0].is_null());
+    CHECK(viewer.forms[1]["parts"].empty());
+    const std::string second = R"({"parts":[2]})";
+    served.server->set_form(FormKind::run, second);
+    CHECK(viewer.follow_until([&] { return viewer.forms[1].dump() == second; }));
+    CHECK(viewer.forms[2]["parts"][0] == 1);
     Viewer late(served);
-    CHECK(late.follow_until([&] { return late.devices == second; }));
+    CHECK(late.follow_until([&] { return late.forms[1].dump() == second; }));
+    served.server->present_nothing();
+    WebClient client(*served.server);
+    REQUIRE(client.open_socket() == 101);
+    served.server->set_form(FormKind::screen, "{}");
+    const auto form = client.next();
+    REQUIRE(form);
+    CHECK(form->payload[0] == std::byte{12});
+    CHECK(form->payload[1] == std::byte{0}); // and not one of the run before
+  }
+
+  TEST_CASE("the input of each form is its own, and the status bar's is none") {
+    using web::FormKind;
+    const auto server = open_server();
+    server->present_nothing();
+    WebClient client(*server);
+    REQUIRE(client.open_socket() == 101);
+    client.send_text("panel\tbefore\t"); // there is no panel yet
+    server->set_form(FormKind::screen, "{}");
+    REQUIRE(client.next());
+    server->set_form(FormKind::run, "{}");
+    REQUIRE(client.next());
+    client.send_text("panel\tradius\t12");
+    client.send_text("form\tPull\t");
+    std::optional<web::FormInput> of_screen;
+    REQUIRE(
+        eventually([&] { return (of_screen = server->next_input(FormKind::screen)).has_value(); }));
+    CHECK(of_screen->control == "Pull");
+    const auto of_run = server->next_input(FormKind::run);
+    REQUIRE(of_run);
+    CHECK(of_run->control == "radius");
+    CHECK(of_run->value == "12");
+    CHECK_FALSE(server->next_input(FormKind::run));
+    CHECK_FALSE(server->next_input(FormKind::status));
   }
 
   TEST_CASE("a wrong origin, host or token is refused, and there is nothing before a loop begins") {
@@ -210,7 +247,7 @@ TEST_SUITE("server") {
     };
     server->present_nothing();
     CHECK(post("a.obj", "v 0 0 0") == 404); // this server has no form
-    server->set_form("{}");
+    server->set_form(web::FormKind::screen, "{}");
     CHECK(post("..%2Fa.obj", "v 0 0 0") == 400);
     const std::string large(3'000'000, 'v');
     REQUIRE(post("my%20scan.obj", large) == 200);
@@ -227,18 +264,18 @@ TEST_SUITE("server") {
     CHECK(form->payload[0] == std::byte{12});
     client.send_text("form\tPull\t");
     REQUIRE(eventually([&] {
-      const auto input = server->next_input();
+      const auto input = server->next_input(web::FormKind::screen);
       return input && input->control == "Pull";
     }));
     client.send_text("form\tPull");
-    REQUIRE(eventually([&] { return server->next_input().has_value(); }));
+    REQUIRE(eventually([&] { return server->next_input(web::FormKind::screen).has_value(); }));
     client.send_text("form Pull");
     CHECK(client.close_code() == 1008);
   }
 
   TEST_CASE("a file is no longer than its request says") {
     const auto server = open_server();
-    server->set_form("{}");
+    server->set_form(web::FormKind::screen, "{}");
     WebClient client(*server);
     client.send("POST " + client.with_token("/open") +
                 "&name=a.obj HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 3\r\n\r\nv 0 0 0");
@@ -251,7 +288,7 @@ TEST_SUITE("server") {
   TEST_CASE("of the values of a slider, the last one is not lost, and no click between them") {
     const auto server = open_server();
     server->present_nothing();
-    server->set_form("{}");
+    server->set_form(web::FormKind::screen, "{}");
     WebClient client(*server);
     REQUIRE(client.open_socket() == 101);
     for (int value = 0; value < 200; ++value)
@@ -261,7 +298,7 @@ TEST_SUITE("server") {
     client.send_text("form\ttime\tend");
     std::vector<std::string> given;
     REQUIRE(eventually([&] {
-      while (const auto input = server->next_input())
+      while (const auto input = server->next_input(web::FormKind::screen))
         given.push_back(input->control + input->value);
       return !given.empty() && given.back() == "timeend";
     }));
@@ -345,7 +382,7 @@ TEST_SUITE("server") {
     ServerLimits limits;
     limits.request_timeout = std::chrono::milliseconds(200);
     const auto server = open_server(limits);
-    server->set_form("{}");
+    server->set_form(web::FormKind::screen, "{}");
     WebClient client(*server);
     client.send("POST " + client.with_token("/open") +
                 "&name=a.obj HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100\r\n\r\nv");

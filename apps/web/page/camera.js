@@ -3,9 +3,7 @@ const FIELD_OF_VIEW = 24 * Math.PI / 180
 
 class Camera {
   constructor(canvas, changed) {
-    this.canvas = canvas
-    this.changed = changed
-    this.covered = 0 // at the left, by the panel, as a share of the width
+    Object.assign(this, { canvas, changed, covered: 0 }) // at the left, by the panel, as a share of the width
     this.home = { azimuth: 0.38, elevation: 0.17, distance: 2.6, target: [0, 0.4, 0] }
     this.reset()
     const pointers = this.pointers = new Map()
@@ -25,51 +23,37 @@ class Camera {
     })
     canvas.addEventListener('wheel', event => {
       event.preventDefault()
-      this.zoom(Math.sign(event.deltaY) * Math.min(1, Math.abs(event.deltaY) / 100))
+      this.zoom(clamp(event.deltaY / 100, -1, 1))
     }, { passive: false })
     canvas.addEventListener('dblclick', () => this.reset())
     canvas.addEventListener('contextmenu', event => event.preventDefault())
   }
 
-  reset() {
-    Object.assign(this, { ...this.home, target: [...this.home.target] })
+  change(values) {
+    Object.assign(this, values)
     this.changed()
   }
+  reset() { this.change(this.home) }
   // The first view: all of a box.
   see({ low, high }) {
     const distance = size(minus(high, low)) / 2 / Math.sin(FIELD_OF_VIEW / 2)
     Object.assign(this.home, { target: times(add(low, high), 0.5), distance: Math.max(0.3, distance) })
     this.reset()
   }
-  look(azimuth, elevation) {
-    Object.assign(this, { azimuth, elevation })
-    this.changed()
-  }
+  look(azimuth, elevation) { this.change({ azimuth, elevation }) }
   // All in the picture, from where one looks.
-  frame() {
-    Object.assign(this, { distance: this.home.distance, target: [...this.home.target] })
-    this.changed()
-  }
-  orbit(dx, dy) {
-    this.azimuth -= 0.006 * dx
-    this.elevation = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.elevation + 0.006 * dy))
-    this.changed()
-  }
+  frame() { this.change({ distance: this.home.distance, target: this.home.target }) }
+  orbit(dx, dy) { this.look(this.azimuth - 0.006 * dx, clamp(this.elevation + 0.006 * dy, -Math.PI / 2, Math.PI / 2)) }
   pan(dx, dy) {
     const metres = this.pictureHeight(this.distance) / this.canvas.clientHeight
     const [right, up] = this.axes()
-    this.target = add(this.target, add(times(right, -dx * metres), times(up, dy * metres)))
-    this.changed()
+    this.change({ target: add(this.target, add(times(right, -dx * metres), times(up, dy * metres))) })
   }
-  zoom(steps) {
-    this.distance = Math.min(20, Math.max(0.15, this.distance * 1.12 ** steps))
-    this.changed()
-  }
+  zoom(steps) { this.change({ distance: clamp(this.distance * 1.12 ** steps, 0.15, 20) }) }
   // One of two fingers has moved.
   pinch(event, dx, dy) {
     const before = this.pointers.get(event.pointerId), other = [...this.pointers.values()].find(pointer => pointer !== before)
-    const apart = point => Math.max(1, Math.hypot(point.clientX - other.clientX, point.clientY - other.clientY))
-    this.zoom(Math.log(apart(before) / apart(event)) / Math.log(1.12))
+    this.zoom(Math.log(Math.max(1, apart(before, other)) / Math.max(1, apart(event, other))) / Math.log(1.12))
     this.pan(dx, dy)
   }
   forget(event) { this.pointers.delete(event.pointerId) }
@@ -97,8 +81,6 @@ class Camera {
     z[3] += 2 * far * near / (near - far)
     const w = rows[2].map(number => -number)
     rows[0] = rows[0].map((number, at) => number + this.covered * w[at])
-    const clip = []
-    for (let column = 0; column < 4; ++column) clip.push(rows[0][column], rows[1][column], z[column], w[column])
-    return clip
+    return [0, 1, 2, 3].flatMap(column => [rows[0][column], rows[1][column], z[column], w[column]])
   }
 }

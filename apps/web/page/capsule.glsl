@@ -2,10 +2,6 @@
 layout(location = 0) in vec4 unit;  // of a ball of radius 1 about the axis z, and which end it belongs to
 layout(location = 1) in vec4 from;  // and the radius there
 layout(location = 2) in vec4 to;
-uniform mat4 clip_of_world;
-uniform vec3 shadow;
-out vec3 place;
-out vec3 normal;
 
 void main() {
   vec3 way = to.xyz - from.xyz;
@@ -17,8 +13,6 @@ void main() {
   float lean = size > 1e-6 ? clamp((from.w - to.w) / size, -0.9, 0.9) : 0.0;
   vec3 u = unit.xyz;
   vec3 leaned = vec3(u.xy * sqrt(1.0 - lean * lean), u.z + lean * (1.0 - abs(u.z)));
-  normal = normalize(leaned.x * x + leaned.y * y + leaned.z * along);
-  place = mix(from.xyz, to.xyz, unit.w) + mix(from.w, to.w, unit.w) * normal;
-  if (shadow.y > 0.0) place -= shadow * (max(place.y, 0.0) / shadow.y);
-  gl_Position = clip_of_world * vec4(place, 1.0);
+  vec3 outwards = normalize(leaned.x * x + leaned.y * y + leaned.z * along);
+  draw_at(mix(from.xyz, to.xyz, unit.w) + mix(from.w, to.w, unit.w) * outwards, outwards);
 }

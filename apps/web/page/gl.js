@@ -18,27 +18,16 @@ function makeProgram(gl, vertex, fragment, feedback = []) {
   if (feedback.length > 0) gl.transformFeedbackVaryings(program, feedback, gl.SEPARATE_ATTRIBS)
   gl.linkProgram(program)
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program))
-  const uniforms = new Map()
+  const setters = new Map(), kinds = { [gl.FLOAT]: 'uniform1f', [gl.FLOAT_VEC3]: 'uniform3fv', [gl.FLOAT_VEC4]: 'uniform4fv' }
   for (let at = 0; at < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); ++at) {
-    const { name, type } = gl.getActiveUniform(program, at)
-    uniforms.set(name.replace('[0]', ''), { type, place: gl.getUniformLocation(program, name) })
-  }
-  const put = (type, place, value) => {
-    if (type === gl.FLOAT) gl.uniform1f(place, value)
-    else if (type === gl.FLOAT_VEC3) gl.uniform3fv(place, value)
-    else if (type === gl.FLOAT_VEC4) gl.uniform4fv(place, value)
-    else if (type === gl.FLOAT_MAT4) gl.uniformMatrix4fv(place, false, value)
-    else gl.uniform1i(place, value)
+    const { name, type } = gl.getActiveUniform(program, at), place = gl.getUniformLocation(program, name)
+    const set = value => gl[kinds[type] || 'uniform1i'](place, value)
+    setters.set(name.replace('[0]', ''), type === gl.FLOAT_MAT4 ? value => gl.uniformMatrix4fv(place, false, value) : set)
   }
   return {
     dispose() { gl.deleteProgram(program) },
     use(values = {}) { gl.useProgram(program); this.set(values) },
-    set(values) {
-      for (const [name, value] of Object.entries(values)) {
-        const uniform = uniforms.get(name)
-        if (uniform) put(uniform.type, uniform.place, value)
-      }
-    },
+    set(values) { for (const [name, value] of Object.entries(values)) setters.get(name)?.(value) },
   }
 }
 
@@ -49,18 +38,29 @@ function makeBuffer(gl, target, data, usage) {
   return buffer
 }
 
+// The first numbers of a buffer.
+function fillBuffer(gl, buffer, data) {
+  gl.bindBuffer(gl.ARRAY_BUFFER, buffer)
+  gl.bufferSubData(gl.ARRAY_BUFFER, 0, data)
+  gl.bindBuffer(gl.ARRAY_BUFFER, null)
+}
+
 // Vertices with these attributes, in the order of their places: a buffer, how many numbers, and what is not usual.
+// Those without a buffer are 1. corners: a buffer, if there is one.
 function makeArray(gl, attributes, corners = null) {
   const array = gl.createVertexArray()
   gl.bindVertexArray(array)
   attributes.forEach(([buffer, size, { type = gl.FLOAT, isInteger = false, stride = 0, offset = 0, divisor = 0 } = {}], place) => {
+    gl.vertexAttrib4f(place, 1, 1, 1, 1)
+    if (!buffer) return
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer)
     gl.enableVertexAttribArray(place)
     if (isInteger) gl.vertexAttribIPointer(place, size, type, stride, offset)
     else gl.vertexAttribPointer(place, size, type, true, stride, offset)
     gl.vertexAttribDivisor(place, divisor)
   })
-  if (corners) makeBuffer(gl, gl.ELEMENT_ARRAY_BUFFER, corners, gl.STATIC_DRAW)
+  gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, corners)
   gl.bindVertexArray(null)
+  gl.bindBuffer(gl.ARRAY_BUFFER, null)
   return array
 }

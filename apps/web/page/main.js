@@ -1,15 +1,17 @@
 // Comes, looks, and comes again when the connection is lost.
 const token = location.hash.slice(1)
 const holds = new Holds()
-let socket = null, latest = null, patience = 500, dirty = true, scene = null, trouble = '', seen = ''
+let socket = null, latest = null, patience = 500, dirty = true, scene = null, trouble = '', seen = '', sentAt = 0
+const due = new Map() // requests that wait for the next picture, by their controls
 const SERVICE_RESTART = 1012
+const BETWEEN_SENDS = 15 // ms, because the server closes a client that sends more than 128 messages per second
 const counts = { updates: 0, updateBytes: 0, shapes: 0, weights: 0, bakes: 0, draws: 0 }
 
 const shown = { hands: true, bones: false, vectors: true, radii: false, contact: false, facets: false }
-const marks = { clay: null, wire: [] } // beside the model
-const panel = new Panel(ask, shown)
+const run = { settings: { radius_m: [] }, puppet: null, contacts: [], wire: [] } // as the server has described it
+const panel = new Panel(ask, shown, fetchPicture), { form } = panel
 try {
-  scene = new Scene(element('scene'), shown, marks)
+  scene = new Scene(element('scene'), shown, run)
 } catch (error) {
   trouble = `No picture: ${error.message}. Figures and buttons work all the same.`
   panel.say(trouble)
@@ -17,18 +19,25 @@ try {
 new Tips()
 const camera = new Camera(element('scene'), () => { dirty = true })
 panel.camera = camera
-const form = new Form(ask, fetchPicture, words => panel.say(words))
 const mover = new HandMover(element('scene'), camera, () => scene && scene.shape && latest &&
-  { hands: latest.hands, origin: scene.origin, pixelOf: place => scene.pixelOf(place) })
-
-panel.painter = new MaskPainter(element('scene'), () => ({ scene, model: panel.model, puppet: panel.puppet, camera }), ask)
+  { hands: latest.hands, origin: scene.origin, pixelOf: place => scene.pixelOf(place) }, ask)
+panel.painter = new MaskPainter(element('scene'), () => ({ scene, model: panel.model, puppet: run.puppet, camera }), ask)
 
 // A form is of another screen than the run.
 const isShaping = () => (document.body.dataset.screen || 'shaping') === 'shaping'
-function ask(request) {
-  if (!isShaping() && !request.startsWith('form\t')) return
-  if (socket && socket.readyState === WebSocket.OPEN) socket.send(request)
+// of: a control, of which only the newest request is sent, with the next picture; null: the request is sent at once.
+function ask(request, of = null) {
+  if (!isOpen() || (!isShaping() && !request.startsWith('form\t'))) return
+  due.delete(of)
+  due.set(of, request)
+  if (of === null) sendAll()
 }
+function sendAll() {
+  for (const request of due.values()) socket.send(request)
+  due.clear()
+  sentAt = performance.now()
+}
+const isOpen = () => socket !== null && socket.readyState === WebSocket.OPEN
 
 function again(why) {
   panel.connected(false)
@@ -87,35 +96,32 @@ function open(model) {
   }
   socket.onmessage = ({ data }) => {
     if (stale) return
-    const type = new DataView(data).getUint8(0)
-    if (type === 3) panel.report(textIn(data), new Uint8Array(data)[1] === 1)
-    else if (type === 4) takeSettings(readSettings(data))
-    else if (type === 5) panel.setHistory(readSteps(data))
-    else if (type === 7) takePuppet(readPuppet(data), model)
+    const [type, more] = new Uint8Array(data, 0, 2)
+    if (type === 1) stale = !takeShape(readShape(data), model)
+    else if (type === 2) takeUpdate(readUpdate(data, model), model)
+    else if (type === 3) panel.report(textIn(data), more === 1)
+    else if (type === 4) run.settings = readSettings(data)
     else if (type === 6) takeWeights(readWeights(data), model)
-    else if (type === 8) marks.clay = panel.clay = readClay(data)
-    else if (type === 9) panel.setStates(readCommands(data))
-    else if (type === 10) panel.setDevices(readDevices(data))
-    else if (type === 11) marks.wire = readWire(data)
-    else if (type === 12) form.take(JSON.parse(textIn(data)))
+    else if (type === 7) takePuppet(readPuppet(data), model)
+    else if (type === 8) run.contacts = readContacts(data)
+    else if (type === 9) panel.refusals = readRefusals(data)
+    else if (type === 11) run.wire = readWire(data)
+    else if (type === 12) form.take(more, JSON.parse(textIn(data)))
     else if (type === 13) takeFigures(JSON.parse(textIn(data)))
-    else if (type === 1) stale = !takeShape(readShape(data), model)
-    else takeUpdate(readUpdate(data, model))
     if (stale) socket.close()
     dirty = true
   }
   // A loop that takes the place of another waits with its model already.
-  socket.onclose = ({ code }) => stale || code === SERVICE_RESTART ? connect() : again('The connection is lost.')
-}
-
-function takeSettings(settings) {
-  panel.setSettings(settings)
-  if (scene) Object.assign(scene, { radii: settings.radius_m, isByHands: ['clay', 'parts'].includes(settings.mode) })
+  socket.onclose = ({ code }) => {
+    due.clear()
+    if (stale || code === SERVICE_RESTART) connect()
+    else again('The connection is lost.')
+  }
 }
 
 function takeFigures(figures) {
   if (!scene) return
-  scene.figures.take(figures)
+  scene.figures = figuresOf(figures, scene)
   const { view } = figures, text = JSON.stringify(view)
   if (!view || text === seen) return
   seen = text
@@ -124,7 +130,7 @@ function takeFigures(figures) {
 }
 
 function takePuppet(puppet, model) {
-  panel.setPuppet(puppet)
+  run.puppet = puppet
   if (scene) scene.shape.setHeld(heldBy(puppet, model))
 }
 
@@ -139,13 +145,14 @@ function takeShape(shape, model) {
   return shape.loop === model.loop
 }
 
-function takeUpdate(update) {
+function takeUpdate(update, { rate }) {
   counts.updates += 1
   counts.updateBytes += update.bytes
   if (!latest && scene) camera.see(scene.boxWith(update.hands))
   latest = update
   holds.follow(update)
-  panel.add(update)
+  CHARTS.late.add(update.maxLate / 1000)
+  CHARTS.uneven.add(Math.abs(update.sinceLast / 1000 - 1000 / rate))
   if (!scene || scene.shape.number === null) return
   for (const step of update.steps) {
     scene.shape.takeStep(step)
@@ -156,16 +163,13 @@ function takeUpdate(update) {
 
 function picture() {
   requestAnimationFrame(picture)
-  const move = mover.next()
-  if (move) ask(move)
-  panel.shaping.send()
-  panel.shaping.follow()
+  if (due.size > 0 && performance.now() - sentAt >= BETWEEN_SENDS) sendAll()
   if (!dirty) return
   dirty = false
   const begin = performance.now()
   if (scene) scene.draw(camera, latest, holds, panel.covered())
-  panel.charts.picture.add(performance.now() - begin)
-  panel.draw()
+  CHARTS.picture.add(performance.now() - begin)
+  if (latest) form.drawCharts(latest.hands)
 }
 
 addEventListener('resize', () => { dirty = true })
@@ -179,11 +183,12 @@ element('scene').addEventListener('webglcontextlost', event => {
 // For tests of this page, and experiments with it.
 window.nendo = {
   ask, counts,
+  control: id => form.all().map(({ wanted }) => wanted).find(wanted => wanted.id === id), // as the server describes it
   vertices: () => Array.from(scene.shape.vertices()),
   state: () => latest && { number: Number(latest.number), held: latest.held, restChanges: latest.restChanges, jumps: latest.jumps,
-    ticks: latest.ticks, loop: panel.model.loop, recorded: panel.stateOf('take').isOn, settings: panel.settings, history: panel.history, puppet: panel.puppet,
-    wrists: latest.hands.map(hand => hand && { place: hand.joints[1].place, turn: hand.forearm, pixel: scene && scene.pixelOf(hand.joints[1].place) }),
-    open: socket.readyState === WebSocket.OPEN, shape: Boolean(scene) && scene.shape.number !== null },
+    ticks: latest.ticks, loop: panel.model.loop, ...run,
+    wrists: latest.hands.map(hand => hand && { ...hand.joints[1], turn: hand.forearm, pixel: scene && scene.pixelOf(hand.joints[1].place) }),
+    open: isOpen(), shape: Boolean(scene) && scene.shape.number !== null },
 }
 connect()
 picture()

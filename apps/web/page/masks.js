@@ -57,7 +57,8 @@ const restOf = ({ origin, unit, places }, at) => [0, 1, 2].map(axis => origin[ax
 // Of each vertex, how much it is held, 0 to 255: all of it within half of a mask's radius, and then less.
 function heldBy({ masks, isInverted }, model) {
   return Uint8Array.from({ length: model.vertices }, (_, vertex) => {
-    const place = restOf(model, vertex), share = masks.reduce((most, { at, radius }) => Math.max(most, Math.min(1, 2 - 2 * size(minus(place, at)) / radius)), 0)
+    const place = restOf(model, vertex), shareOf = ({ at, radius }) => clamp(2 - 2 * size(minus(place, at)) / radius, 0, 1)
+    const share = masks.reduce((most, mask) => Math.max(most, shareOf(mask)), 0)
     return Math.round(255 * (isInverted ? 1 - share : share))
   })
 }

@@ -27,22 +27,16 @@ function unitCapsule(rings = 8, sides = 20) {
 }
 
 class Scene {
-  // parts: what is shown, by name. marks: the clay's contacts, and a drawn wire.
-  constructor(canvas, parts, marks) {
+  // parts: what is shown, by name. run: its settings, the clay's contacts, and a drawn wire.
+  constructor(canvas, parts, run) {
     const gl = canvas.getContext('webgl2', { antialias: true, alpha: true, stencil: true, powerPreference: 'high-performance' })
     if (!gl) throw new Error('this browser shows no WebGL2')
-    this.gl = gl
-    this.canvas = canvas
-    this.radii = [0, 0, 0, 0, 0]
-    Object.assign(this, { parts, marks })
-    this.skins = null // of the left and of the right hand, when they have come
-    this.readSkin = null // that they are made of
-    this.figures = new Figures(this)
-    const light = glsl('plain') + glsl('light')
-    this.model = makeProgram(gl, glsl('deform') + glsl('model'), glsl('paint') + glsl('light'))
-    this.skin = makeProgram(gl, glsl('skin'), light)
-    this.capsule = makeProgram(gl, glsl('capsule'), light)
-    this.ground = makeProgram(gl, glsl('ground'), light)
+    Object.assign(this, { gl, canvas, parts, run })
+    this.skins = null // of the left hands and of the right ones, when what they are made of has come
+    this.figures = { hands: [], marks: [] } // without a run
+    const program = (vertex, colour) => makeProgram(gl, glsl('stage') + vertex, glsl(colour) + glsl('light'))
+    this.model = program(glsl('deform') + glsl('model'), 'paint')
+    ;[this.skin, this.capsule, this.ground] = ['skin', 'capsule', 'ground'].map(name => program(glsl(name), 'plain'))
     this.makeCapsules()
     const square = makeBuffer(gl, gl.ARRAY_BUFFER, new Float32Array([-3, 0, -3, 3, 0, -3, -3, 0, 3, 3, 0, 3]), gl.STATIC_DRAW)
     this.groundArray = makeArray(gl, [[square, 3]])
@@ -50,10 +44,11 @@ class Scene {
 
   makeCapsules() {
     const { gl } = this, { places, corners } = unitCapsule()
+    const shape = makeBuffer(gl, gl.ARRAY_BUFFER, places, gl.STATIC_DRAW)
     this.capsuleCorners = corners.length
     this.instances = gl.createBuffer()
     const ends = [0, 16].map(offset => [this.instances, 4, { stride: 32, offset, divisor: 1 }])
-    this.capsuleArray = makeArray(gl, [[makeBuffer(gl, gl.ARRAY_BUFFER, places, gl.STATIC_DRAW), 4], ...ends], corners)
+    this.capsuleArray = makeArray(gl, [[shape, 4], ...ends], makeBuffer(gl, gl.ELEMENT_ARRAY_BUFFER, corners, gl.STATIC_DRAW))
   }
 
   // fetchPicture, changed: as Paint takes them.
@@ -77,9 +72,10 @@ class Scene {
       low[at % 3] = Math.min(low[at % 3], number)
       high[at % 3] = Math.max(high[at % 3], number)
     })
-    const metres = (number, axis) => number * this.scale + model.origin[axis] / model.unitsPerMetre
-    this.origin = [metres((low[0] + high[0]) / 2, 0), metres(low[1], 1), metres((low[2] + high[2]) / 2, 2)]
-    this.box = [low, high].map(corner => minus(corner.map(metres), this.origin))
+    const corners = [low, high].map(corner => add(times(corner, this.scale), times(model.origin, 1 / model.unitsPerMetre)))
+    const [x, , z] = times(add(...corners), 0.5)
+    this.origin = [x, corners[0][1], z]
+    this.box = corners.map(corner => minus(corner, this.origin))
     this.height = this.box[1][1]
   }
   // Of the model and the hands, about the origin.
@@ -109,10 +105,8 @@ class Scene {
     gl.bindVertexArray(null)
   }
 
-  setSkin(skin) {
-    this.readSkin = skin
-    this.skins = [-1, 1].map(side => new Skin(this.gl, skin, side))
-  }
+  setSkin(readSkin) { Object.assign(this, { readSkin, skins: [[], []] }) }
+  skinOf(slot, number = 0) { return this.skins[slot][number] ||= new Skin(this.gl, this.readSkin, slot === 0 ? -1 : 1) }
   // Depth first, so that only its nearest layer is mixed in.
   drawSkin({ skin, bones, joints, look, isShade }) {
     const { gl } = this
@@ -139,12 +133,7 @@ class Scene {
   draw(camera, update, holds, covered) {
     const { gl, canvas } = this
     this.resize()
-    const { azimuth } = camera
-    const round = ([x, y, z]) => {
-      const [s, c] = [Math.sin(azimuth), Math.cos(azimuth)]
-      const way = [c * x + s * z, y, c * z - s * x]
-      return times(way, 1 / size(way))
-    }
+    const round = way => turned(turnAbout([0, 1, 0], camera.azimuth), unit(way))
     camera.covered = covered
     const aspect = canvas.width / Math.max(1, canvas.height)
     this.view = {
@@ -171,32 +160,25 @@ class Scene {
     this.capsules(beside.bones, BONE)
     this.capsules(beside.arrows, ARROW)
     this.capsules(beside.wire, WIRE)
-    if (!update) this.drawMarks()
     beside.contacts.forEach((some, at) => this.capsules(some, CONTACTS[at]))
+    beside.marks.forEach(({ capsules, material }) => this.capsules(capsules, material))
     gl.stencilOp(gl.KEEP, gl.KEEP, gl.KEEP)
-    beside.skins.forEach(skin => this.drawSkin(skin))
+    beside.hands.forEach(hand => this.drawSkin(hand))
     gl.disable(gl.STENCIL_TEST)
     gl.depthMask(false)
     this.capsules(beside.reaches, REACH)
     gl.depthMask(true)
   }
 
-  drawMarks() {
-    for (const { from, to, radius, colour } of this.figures.marks) {
-      const one = new Capsules()
-      one.add(from, to, radius, radius)
-      this.capsules(one, { ...BONE, colour })
-    }
-  }
-
   // What there is beside the model, about the scene's origin.
   beside(update, holds) {
-    const parts = { bones: new Capsules(), arrows: new Capsules(), reaches: new Capsules(), wire: new Capsules(), contacts: CONTACTS.map(() => new Capsules()), skins: [] }
-    if (!update) parts.skins.push(...this.figures.hands)
-    if (!update) return parts
-    if (this.isByHands && this.parts.contact && this.marks.clay) this.addContacts(parts.contacts)
-    this.marks.wire.forEach((ends, at) => { // the newest, and what it has swept
-      const [from, to] = ends.map(end => minus(end, this.origin)), isNewest = at + 1 === this.marks.wire.length
+    const [bones, arrows, reaches, wire, ...contacts] = Array.from({ length: 4 + CONTACTS.length }, () => new Capsules())
+    const parts = { bones, arrows, reaches, wire, contacts, hands: [], marks: [] }
+    if (!update) return { ...parts, ...this.figures }
+    const { settings: { mode, radius_m } } = this.run, isByHands = mode === 'clay' || mode === 'parts'
+    if (isByHands && this.parts.contact) this.addContacts(parts.contacts)
+    this.run.wire.forEach((ends, at) => { // the newest, and what it has swept
+      const [from, to] = ends.map(end => minus(end, this.origin)), isNewest = at + 1 === this.run.wire.length
       parts[isNewest ? 'wire' : 'reaches'].add(from, to, 0.0015, 0.0015)
     })
     update.hands.forEach((given, slot) => {
@@ -204,14 +186,14 @@ class Scene {
       const place = at => minus(at, this.origin)
       const joints = given.joints.map(joint => ({ place: place(joint.place), turn: joint.turn }))
       if (this.parts.hands && this.skins)
-        parts.skins.push({ skin: this.skins[slot], bones: given.bones, joints, look: given.silent ? SILENT : SKIN, isShade: given.silent })
+        parts.hands.push({ skin: this.skinOf(slot), bones: given.bones, joints, look: given.silent ? SILENT : SKIN, isShade: given.silent })
       if (this.parts.bones) bonesOf({ joints }, parts.bones)
       const starts = holds.starts[slot]
-      if (!update.held || !starts || this.isByHands || update.isPuppet) return // their tips hold nothing
+      if (!update.held || !starts || isByHands || update.isPuppet) return // their tips hold nothing
       TIPS.forEach((tip, finger) => {
         const start = place(starts[finger])
         if (this.parts.vectors) arrow(start, joints[tip].place, 0.007, parts.arrows)
-        if (this.parts.radii) parts.reaches.add(start, start, this.radii[finger], this.radii[finger])
+        if (this.parts.radii) parts.reaches.add(start, start, radius_m[finger], radius_m[finger])
       })
     })
     return parts
@@ -220,7 +202,7 @@ class Scene {
   // The harder a hand presses, the larger and the redder.
   addContacts(capsules) {
     const longest = Math.min(0.3, Math.max(0.05, this.height))
-    for (const { place, strength } of this.marks.clay.contacts) {
+    for (const { place, strength } of this.run.contacts) {
       const at = minus(place, this.origin), radius = longest * (0.010 + 0.015 * strength)
       capsules[Math.min(CONTACTS.length - 1, Math.floor(CONTACTS.length * strength))].add(at, at, radius, radius)
     }
@@ -241,7 +223,7 @@ class Scene {
     const shadow = { dark: 0.2, fade, shadow: this.view.key }
     this.model.use({ ...this.view, ...LIT, ...CLAY, ...shadow, scale: this.scale, offset: this.offset })
     this.shape.draw(this.model)
-    for (const { skin, bones, joints } of beside.skins)
+    for (const { skin, bones, joints } of beside.hands)
       skin.draw(this.skin, bones, joints, { ...this.view, ...LIT, ...CLAY, ...shadow }, triangles => triangles())
     gl.depthMask(true)
   }

@@ -22,22 +22,11 @@ function normalsOf(places, corners) {
   return normals
 }
 
-// The places that a step's vectors make of a base: each vertex moves by the sum of its terms, a value times a vector.
-function movedBy({ values, counts, ofVector }, base, vectors) {
-  const places = new Float32Array(base)
-  for (let vertex = 0, term = 0; vertex < counts.length; ++vertex)
-    for (const end = term + counts[vertex]; term < end; ++term)
-      for (let axis = 0; axis < 3; ++axis) places[3 * vertex + axis] += values[term] * vectors[3 * ofVector[term] + axis]
-  return places
-}
-
 const NOTHING = { count: 0, texels: [], weights: null }
 
 class Shape {
   constructor(gl, model) {
-    this.gl = gl
-    this.model = model
-    this.seams = splitSeams(model)
+    Object.assign(this, { gl, model, seams: splitSeams(model) })
     this.bake = makeProgram(gl, glsl('deform') + glsl('bake'), 'void main() {}', ['baked_place', 'baked_normal'])
     this.corners = makeBuffer(gl, gl.ELEMENT_ARRAY_BUFFER, this.seams.drawn, gl.STATIC_DRAW)
     this.texcoords = this.seams.texcoords && makeBuffer(gl, gl.ARRAY_BUFFER, this.seams.texcoords, gl.STATIC_DRAW)
@@ -53,41 +42,16 @@ class Shape {
   }
 
   makeState() {
-    const { gl } = this
-    const array = gl.createVertexArray()
-    gl.bindVertexArray(array)
-    const buffers = [0, 1].map(which => {
-      const buffer = makeBuffer(gl, gl.ARRAY_BUFFER, 12 * this.seams.count, gl.DYNAMIC_COPY)
-      gl.enableVertexAttribArray(which)
-      gl.vertexAttribPointer(which, 3, gl.FLOAT, false, 0, 0)
-      return buffer
-    })
-    this.share(2, this.texcoords, 2, gl.FLOAT, 0)
-    this.share(3, this.tints, 3, gl.UNSIGNED_SHORT, 6)
-    this.share(4, this.held, 1, gl.UNSIGNED_BYTE, 1)
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners)
-    gl.bindVertexArray(null)
-    gl.bindBuffer(gl.ARRAY_BUFFER, null)
-    return { array, buffers }
-  }
-
-  // An attribute that both states have; 1, where the model has none.
-  share(place, buffer, size, type, stride) {
-    const { gl } = this
-    gl.vertexAttrib4f(place, 1, 1, 1, 1)
-    if (!buffer) return
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer)
-    gl.enableVertexAttribArray(place)
-    gl.vertexAttribPointer(place, size, type, type !== gl.FLOAT, stride, 0)
+    const { gl } = this, { UNSIGNED_SHORT, UNSIGNED_BYTE } = gl
+    const buffers = [0, 1].map(() => makeBuffer(gl, gl.ARRAY_BUFFER, 12 * this.seams.count, gl.DYNAMIC_COPY))
+    const shared = [[this.texcoords, 2], [this.tints, 3, { type: UNSIGNED_SHORT }], [this.held, 1, { type: UNSIGNED_BYTE }]]
+    return { array: makeArray(gl, [...buffers.map(buffer => [buffer, 3]), ...shared], this.corners), buffers }
   }
 
   dispose() {
-    const { gl } = this
-    for (const { array, buffers } of this.states) {
-      gl.deleteVertexArray(array)
-      buffers.forEach(buffer => gl.deleteBuffer(buffer))
-    }
-    for (const buffer of [this.corners, this.texcoords, this.tints, this.held]) gl.deleteBuffer(buffer)
+    const { gl } = this, buffers = this.states.flatMap(state => state.buffers)
+    for (const { array } of this.states) gl.deleteVertexArray(array)
+    for (const buffer of [...buffers, this.corners, this.texcoords, this.tints, this.held]) gl.deleteBuffer(buffer)
     this.bake.dispose()
     gl.deleteTransformFeedback(this.feedback)
     gl.deleteTexture(this.texture)
@@ -96,13 +60,8 @@ class Shape {
   // base: null if only the card has it. isOld: the card has another one.
   setBase(places) { Object.assign(this, { base: places, isOld: true, pending: NOTHING, isMoved: false }) }
   upload(state, places) {
-    const { gl } = this
     const data = [places, normalsOf(places, this.model.corners)]
-    state.buffers.forEach((buffer, which) => {
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffer)
-      gl.bufferSubData(gl.ARRAY_BUFFER, 0, forDrawn(data[which], 3, this.seams))
-    })
-    gl.bindBuffer(gl.ARRAY_BUFFER, null)
+    state.buffers.forEach((buffer, which) => fillBuffer(this.gl, buffer, forDrawn(data[which], 3, this.seams)))
   }
   // In the model's order, whose vertices come first.
   read(state) {
@@ -119,17 +78,9 @@ class Shape {
   }
 
   // held: of each vertex, 0 to 255.
-  setHeld(held) {
-    const { gl } = this
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.held)
-    gl.bufferSubData(gl.ARRAY_BUFFER, 0, forDrawn(held, 1, this.seams))
-    gl.bindBuffer(gl.ARRAY_BUFFER, null)
-  }
+  setHeld(held) { fillBuffer(this.gl, this.held, forDrawn(held, 1, this.seams)) }
 
-  takeWeights(weights) {
-    this.weights = weights
-    this.pending = NOTHING // which was for those before
-  }
+  takeWeights(weights) { Object.assign(this, { weights, pending: NOTHING }) } // what was pending was for the previous ones
 
   takeStep(step) {
     if (step.weights !== null && (!this.weights || step.weights !== this.weights.number)) return
@@ -144,9 +95,14 @@ class Shape {
     this.states.reverse()
     this.base = null
   }
+  // What a step's vectors make of the base: each vertex moves by the sum of its terms, a value times a vector.
   moved({ texels }) {
     this.base ||= this.read(this.states[0])
-    return movedBy(this.weights, this.base, texels)
+    const { values, counts, ofVector } = this.weights, places = new Float32Array(this.base)
+    for (let vertex = 0, term = 0; vertex < counts.length; ++vertex)
+      for (const end = term + counts[vertex]; term < end; ++term)
+        for (let axis = 0; axis < 3; ++axis) places[3 * vertex + axis] += values[term] * texels[3 * ofVector[term] + axis]
+    return places
   }
 
   // Before anything is drawn, or made of the base: what the card lacks. Makes pending vectors the other state.

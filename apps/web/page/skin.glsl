@@ -5,10 +5,6 @@ layout(location = 2) in uvec4 carriers;
 layout(location = 3) in vec4 shares;
 uniform vec4 turns[26];   // of a joint since the open hand
 uniform vec4 shifts[26];  // half of its way, times its turn
-uniform mat4 clip_of_world;
-uniform vec3 shadow;
-out vec3 place;
-out vec3 normal;
 
 void main() {
   vec4 turn = vec4(0.0), shift = vec4(0.0);
@@ -18,8 +14,6 @@ void main() {
   }
   float twice = 2.0 / dot(turn, turn);
   vec3 v = turn.xyz, s = shift.xyz;
-  normal = rest_normal + twice * cross(v, cross(v, rest_normal) + turn.w * rest_normal);
-  place = rest_place + twice * (cross(v, cross(v, rest_place) + turn.w * rest_place) + turn.w * s - shift.w * v + cross(v, s));
-  if (shadow.y > 0.0) place -= shadow * (max(place.y, 0.0) / shadow.y);
-  gl_Position = clip_of_world * vec4(place, 1.0);
+  draw_at(rest_place + twice * (cross(v, cross(v, rest_place) + turn.w * rest_place) + turn.w * s - shift.w * v + cross(v, s)),
+          rest_normal + twice * cross(v, cross(v, rest_normal) + turn.w * rest_normal));
 }

@@ -46,12 +46,13 @@ class Skin {
     const type = gl.UNSIGNED_BYTE, put = (data, usage) => makeBuffer(gl, gl.ARRAY_BUFFER, data, usage)
     this.buffers = [0, 1].map(() => put(4 * skin.places.length, gl.DYNAMIC_DRAW)) // places, normals
     const carriers = [put(skin.carriers, gl.STATIC_DRAW), 4, { type, isInteger: true }], shares = [put(skin.shares, gl.STATIC_DRAW), 4, { type }]
-    this.array = makeArray(gl, [...this.buffers.map(buffer => [buffer, 3]), carriers, shares], skin.corners)
+    const corners = makeBuffer(gl, gl.ELEMENT_ARRAY_BUFFER, skin.corners, gl.STATIC_DRAW)
+    this.array = makeArray(gl, [...this.buffers.map(buffer => [buffer, 3]), carriers, shares], corners)
   }
 
   // Makes the open hand's skin the wearer's.
   fit(bones) {
-    const { gl, skin, open, side } = this, places = new Float32Array(skin.places.length)
+    const { skin, open, side } = this, places = new Float32Array(skin.places.length)
     Object.assign(this, { bones, sized: sizedAs(bones, open) })
     const stretches = stretchesTo(this.sized, open)
     for (let at = 0; at < places.length / 3; ++at) {
@@ -65,10 +66,7 @@ class Skin {
       }
     }
     const normals = normalsOf(places, skin.corners).map(number => side * number) // a mirror turns triangles over
-    ;[places, normals].forEach((numbers, which) => {
-      gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[which])
-      gl.bufferSubData(gl.ARRAY_BUFFER, 0, numbers)
-    })
+    ;[places, normals].forEach((numbers, which) => fillBuffer(this.gl, this.buffers[which], numbers))
   }
 
   // The movements of the joints from the open hand, for the shader. Of a turn's two signs it is the one
@@ -78,7 +76,7 @@ class Skin {
     for (let step = 1; step <= JOINTS; ++step) {
       const at = step % JOINTS, { place, turn } = joints[at], before = turns[PARENTS[at]]
       let by = product(turn, inverse(this.sized[at].turn))
-      if (before && before.reduce((sum, part, axis) => sum + part * by[axis], 0) < 0) by = by.map(part => -part)
+      if (before && dot(before, by) < 0) by = by.map(part => -part)
       turns[at] = by
       shifts[at] = product([...times(minus(place, turned(by, this.sized[at].place)), 0.5), 0], by)
     }

@@ -30,7 +30,7 @@ class Reader {
 function readModel(buffer) {
   const from = new Reader(buffer)
   if (buffer.byteLength < 88 || from.text(8) !== 'NENDOWEB') throw new Error('this server is no nendo')
-  if (from.u32() !== 8) throw new Error('this server speaks another version; reload the page')
+  if (from.u32() !== 9) throw new Error('this server speaks another version; reload the page')
   const [vertices, triangles, nameBytes] = from.some(3, () => from.u32())
   const [rate, unit, ...origin] = from.some(5, () => from.f64()), unitsPerMetre = from.f64(), diagonal = from.f64()
   const loop = from.u16(), flags = from.u16(), coats = from.u32(), areColoursOfCorners = Boolean(flags & 16)
@@ -59,44 +59,22 @@ function readCoats(from, count) {
 // The place and the turn of each joint of a hand.
 const readJoints = from => from.some(JOINTS, () => ({ place: from.f32s(3), turn: from.f32s(4) }))
 
-// What follows the first four bytes of a report, of the settings, of the commands and of the devices.
+// What follows the first four bytes of a message.
 const textIn = buffer => new TextDecoder().decode(buffer.slice(4))
 
-// The values of settings by their names, as `settings` sends them; of each finger, five; radii are numbers.
+// The values of settings by their names, as `settings` sends them; radii are numbers.
 function readSettings(buffer) {
   const settings = Object.fromEntries(textIn(buffer).split(' ').map(pair => pair.split('=')))
-  const brushes = settings.brushes.split(',')
-  return { ...settings, radius_m: settings.radius_m.split(',').map(Number), brushes: brushes.length > 1 ? brushes : Array(5).fill(brushes[0]) }
+  return { ...settings, radius_m: settings.radius_m.split(',').map(Number) }
 }
 
-// By the names of commands that are on, hidden or not possible. The others are off and possible.
-function readCommands(buffer) {
-  return new Map(textIn(buffer).split('\n').slice(0, -1).map(line => {
-    const [name, state, refusal] = line.split('\t')
-    return [name, { isOn: state === 'on', isHidden: state === 'hidden', refusal }]
-  }))
-}
+// By the names of commands why they are not possible; an empty reason: they are.
+const readRefusals = buffer => new Map(textIn(buffer).split('\n').map(line => line.split('\t')).map(([name, , refusal]) => [name, refusal]))
 
-// Of each hand: its glove, and the station of a tracker that moves its wrist.
-function readDevices(buffer) {
-  const devices = [[], []]
-  for (const line of textIn(buffer).split('\n').slice(0, -1)) {
-    const [side, title, state] = line.split('\t')
-    devices[side === 'left' ? 0 : 1].push({ title, state })
-  }
-  return devices
-}
-
-const STEPS = ['stroke', 'reset', 'mode', 'kernel', 'radius', 'folding', 'filter', 'settings', 'subdivide', 'brush', 'puppet', 'volume', 'hold', 'mask', 'symmetry', 'refine', 'cut', 'join', 'copy', 'remove', 'topology']
-function readSteps(buffer) {
-  const from = new Reader(buffer, 1), count = from.u8(), undoable = from.u8()
-  from.at = 8
-  return { undoable, steps: from.some(count, () => ({ kind: STEPS[from.u32()] || 'step', at: from.f32() })) }
-}
-
-function readClay(buffer) {
-  const from = new Reader(buffer, 2), count = from.u16(), penetration = from.f32(), volume = from.f64(), first = from.f64()
-  return { penetration, volume, first, contacts: from.some(count, () => ({ place: from.f32s(3), strength: from.f32() })) }
+// Where hands touch clay.
+function readContacts(buffer) {
+  const from = new Reader(buffer, 24), count = from.view.getUint16(2, true)
+  return from.some(count, () => ({ place: from.f32s(3), strength: from.f32() }))
 }
 
 // The ends of a drawn wire, the newest last.
@@ -116,9 +94,9 @@ function readWeights(buffer) {
 }
 
 function readPuppet(buffer) {
-  const from = new Reader(buffer, 2), count = from.u16(), number = from.u32(), text = () => from.text(from.u8())
-  const functions = from.some(count, () => ({ name: text(), signal: text() })), isInverted = from.view.getUint8(1) === 1
-  return { number, functions, isInverted, masks: from.some(from.u32(), () => ({ at: from.f32s(3), radius: from.f32() })) }
+  const from = new Reader(buffer, 1), isInverted = from.u8() === 1, functions = from.u16(), number = from.u32()
+  from.some(2 * functions, () => from.text(from.u8())) // names and signals, which the panel's form has as well
+  return { number, isInverted, masks: from.some(from.u32(), () => ({ at: from.f32s(3), radius: from.f32() })) }
 }
 
 // Three of a quaternion's parts, 15 bits each; the largest one follows.
@@ -155,13 +133,12 @@ const WENDLAND = [
 ]
 // Where a field takes a place.
 function taken(field, place) {
-  const one = [1, ...place]
-  const sum = [0, 1, 2].map(row => one.reduce((all, x, at) => all + x * (field.polynomial[4 * row + at] || 0), place[row]))
+  const sum = place.map((x, row) => field.polynomial.length > 0 ? x + dot([1, ...place], field.polynomial.slice(4 * row)) : x)
   for (const { centre, inverse, coefficient } of field.functions) {
     const u = minus(place, centre).map(part => part * inverse), t = size(u)
     if (t >= 1) continue
     const clay = field.volume * (1 - t) ** 4
-    const along = 15 * clay * coefficient.reduce((all, a, axis) => all + a * u[axis], 0)
+    const along = 15 * clay * dot(coefficient, u)
     const w = (1 - field.volume) * WENDLAND[field.kernel](t, 1 - t) + clay * (1 + t * (4 - 20 * t))
     coefficient.forEach((a, axis) => { sum[axis] += w * a + along * u[axis] })
   }
@@ -200,15 +177,16 @@ function readStep(from) {
 }
 
 function readUpdate(buffer, model) {
-  const from = new Reader(buffer, 1), state = from.u8(), bits = from.u8(), status = from.u8(), steps = from.u32()
-  const [number, tick, ticks, missed] = from.some(4, () => from.u64()), restChanges = from.u32(), jumps = from.u32()
-  const [late, maxLate, sinceLast] = from.f32s(3), [lost, skipped, links] = from.some(3, () => from.u32())
+  const from = new Reader(buffer, 1), state = from.u8(), bits = from.u8(), has = (flags, bit) => (flags & bit) !== 0
+  from.at = 4
+  const steps = from.u32(), [number, , ticks] = from.some(4, () => from.u64()), [restChanges, jumps] = from.some(2, () => from.u32())
+  const [, maxLate, sinceLast] = from.f32s(3)
+  from.at = 72
   return {
-    letGo: [(state & 16) !== 0, (state & 32) !== 0], symmetric: (state & 64) !== 0, isPuppet: (state & 128) !== 0,
-    held: (state & 1) !== 0, inHand: (state & 8) !== 0, status, number, tick, ticks, missed, restChanges, jumps,
-    late, maxLate, sinceLast, lost, skipped, links, bytes: buffer.byteLength,
-    hands: [0, 1].map(slot => bits & 1 << slot ? {
-      ...readHand(from, model.bones[slot][bits & 16 << slot ? 1 : 0]), silent: (bits & 4 << slot) !== 0, wristLost: (bits & 64 << slot) !== 0,
+    letGo: [has(state, 16), has(state, 32)], symmetric: has(state, 64), isPuppet: has(state, 128), held: has(state, 1),
+    number, ticks, restChanges, jumps, maxLate, sinceLast, bytes: buffer.byteLength,
+    hands: [0, 1].map(slot => has(bits, 1 << slot) ? {
+      ...readHand(from, model.bones[slot][has(bits, 16 << slot) ? 1 : 0]), silent: has(bits, 4 << slot),
     } : null),
     steps: from.some(steps, () => readStep(from)),
   }

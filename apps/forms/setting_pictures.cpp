@@ -1,17 +1,17 @@
-#include "viewer/setting_pictures.hpp"
+#include "forms/setting_pictures.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <utility>
 
 #include <nendo/deform/type2.hpp>
 #include <nendo/deform/wendland.hpp>
+#include <nendo/flow/command.hpp>
 
-#include "viewer/theme.hpp"
-
-namespace nendo::viewer {
+namespace nendo::forms {
 namespace {
 
 using deform::Brush;
@@ -85,48 +85,82 @@ SurfaceLines shaped_by(Brush brush) {
   return lines;
 }
 
-ImVec2 at(ImVec2 low, ImVec2 high, double x, double y) { // each from 0 to 1
-  return {low.x + static_cast<float>(x) * (high.x - low.x),
-          high.y - static_cast<float>(y) * (high.y - low.y)};
+/// Those that move the surface in its plane are seen from above, the others rather from the front.
+LinePicture picture_of(Brush brush) {
+  const auto is_any_of = [&](auto... one) { return ((one == brush) || ...); };
+  const bool from_above = is_any_of(Brush::twist, Brush::scale, Brush::pinch);
+  constexpr double half_width = 1.2, half_height = 0.8;
+  const double depth = from_above ? 1.0 : 0.5;
+  const SurfaceLines& lines = lines_of(brush);
+  LinePicture picture;
+  for (std::size_t number = 0; number < (from_above ? lines.size() : drawn_rows); ++number) {
+    picture.emplace_back();
+    for (const Vector3d& place : lines[number])
+      if (std::abs(place.x()) <= half_width)
+        picture.back().emplace_back(0.5 + place.x() / (2.0 * half_width),
+                                    0.5 + (place.z() + depth * place.y()) / (2.0 * half_height));
+    if (picture.back().empty()) picture.pop_back();
+  }
+  return picture;
+}
+
+LinePicture picture_of(deform::Wendland kernel) {
+  constexpr int points = 41;
+  LinePicture picture(1);
+  for (int k = 0; k < points; ++k) {
+    const double x = static_cast<double>(k) / (points - 1);
+    picture[0].emplace_back(x, deform::wendland(kernel, std::abs(2.0 * x - 1.0)));
+  }
+  return picture;
+}
+
+using Pictures = std::vector<std::pair<std::string_view, LinePicture>>;
+
+const Pictures& all_pictures() {
+  static const Pictures all = [] {
+    Pictures made;
+    for (std::size_t at = 0; at < deform::brush_count; ++at)
+      made.emplace_back(name_of(static_cast<Brush>(at)), picture_of(static_cast<Brush>(at)));
+    for (const deform::Wendland kernel : flow::PendingSettings::kernels)
+      made.emplace_back(name_of(kernel), picture_of(kernel));
+    return made;
+  }();
+  return all;
+}
+
+std::string svg_point(const Eigen::Vector2d& place) {
+  char text[32]; // a tenth of a hundredth is less than a pixel
+  std::snprintf(text, sizeof text, "%.4g %.4g", 100.0 * place.x(), 100.0 - 100.0 * place.y());
+  return text;
 }
 
 } // namespace
 
 const SurfaceLines& lines_of(Brush brush) {
-  static std::array<SurfaceLines, deform::brush_count> all;
-  SurfaceLines& lines = all[static_cast<std::size_t>(brush)];
-  if (lines.empty()) lines = shaped_by(brush);
-  return lines;
+  static const auto all = [] {
+    std::array<SurfaceLines, deform::brush_count> made;
+    for (std::size_t at = 0; at < made.size(); ++at)
+      made[at] = shaped_by(static_cast<Brush>(at));
+    return made;
+  }();
+  return all[static_cast<std::size_t>(brush)];
 }
 
-/// Those that move the surface in its plane are seen from above, the others rather from the front.
-void draw_brush(ImDrawList& list, ImVec2 low, ImVec2 high, std::size_t brush, ImU32 colour) {
-  const auto is_any_of = [&](auto... one) { return ((one == static_cast<Brush>(brush)) || ...); };
-  const bool from_above = is_any_of(Brush::twist, Brush::scale, Brush::pinch);
-  constexpr double half_width = 1.2, half_height = 0.8;
-  const double depth = from_above ? 1.0 : 0.5;
-  const SurfaceLines& lines = lines_of(static_cast<Brush>(brush));
-  for (std::size_t number = 0; number < (from_above ? lines.size() : drawn_rows); ++number) {
-    ImVec2 before;
-    bool is_first = true;
-    for (const Vector3d& place : lines[number]) {
-      if (std::abs(place.x()) > half_width) continue;
-      const ImVec2 to = at(low, high, 0.5 + place.x() / (2.0 * half_width),
-                           0.5 + (place.z() + depth * place.y()) / (2.0 * half_height));
-      if (!std::exchange(is_first, false)) list.AddLine(before, to, colour, scale());
-      before = to;
-    }
+const LinePicture* line_picture(std::string_view name) {
+  const auto found = std::ranges::find(all_pictures(), name, &Pictures::value_type::first);
+  return found == all_pictures().end() ? nullptr : &found->second;
+}
+
+std::string line_pictures_js() {
+  std::string text = "{";
+  for (const auto& [name, picture] : all_pictures()) {
+    text += "\n  \"" + std::string(name) + "\": \"";
+    for (const auto& line : picture)
+      for (std::size_t at = 0; at < line.size(); ++at)
+        text += (at == 0 ? "M" : " ") + svg_point(line[at]);
+    text += "\",";
   }
+  return text + "\n}";
 }
 
-void draw_kernel(ImDrawList& list, ImVec2 low, ImVec2 high, std::size_t kernel, ImU32 colour) {
-  std::array<ImVec2, 41> points;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const double x = static_cast<double>(k) / static_cast<double>(points.size() - 1);
-    points[k] = at(low, high, x,
-                   deform::wendland(static_cast<deform::Wendland>(kernel), std::abs(2.0 * x - 1)));
-  }
-  list.AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, 1.5F * scale());
-}
-
-} // namespace nendo::viewer
+} // namespace nendo::forms

@@ -6,23 +6,23 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "studio/page_form.hpp"
+#include "web/page_form.hpp"
 
 namespace page_form_test {
 
 using namespace nendo;
-using namespace nendo::studio;
+using namespace nendo::web;
 using Json = nlohmann::json;
 
 TEST_SUITE("page_form") {
   TEST_CASE("a button is pressed once, and of two with one name the one that is meant") {
     PageForm form;
-    const auto describe = [&](std::optional<web::FormInput> input) {
+    const auto describe = [&](std::optional<FormInput> input) {
       form.begin(std::move(input));
       form.part("ways");
       const bool first = form.button("Calibrate...", "help");
       const bool second = form.button("Calibrate...", "help");
-      const bool grey = form.button("Keep", "", Form::Look::grey);
+      const bool grey = form.button("Keep", "", forms::Form::Look::grey);
       return std::array{first, second, grey};
     };
     CHECK(describe({}) == std::array{false, false, false});
@@ -32,10 +32,10 @@ TEST_SUITE("page_form") {
     REQUIRE(controls.size() == 3);
     CHECK(controls[0]["id"] != controls[1]["id"]);
     const std::string second = controls[1]["id"];
-    CHECK(describe(web::FormInput{second, ""}) == std::array{false, true, false});
+    CHECK(describe(FormInput{second, ""}) == std::array{false, true, false});
     CHECK(describe({}) == std::array{false, false, false});
-    CHECK(describe(web::FormInput{"Keep", ""}) == std::array{false, false, false}); // not possible
-    CHECK(describe(web::FormInput{"no such control", ""}) == std::array{false, false, false});
+    CHECK(describe(FormInput{"Keep", ""}) == std::array{false, false, false}); // not possible
+    CHECK(describe(FormInput{"no such control", ""}) == std::array{false, false, false});
   }
 
   TEST_CASE("values are those of the control, whatever a client sends") {
@@ -46,7 +46,7 @@ TEST_SUITE("page_form") {
     std::string name;
     constexpr std::array<std::string_view, 2> names{"gloves", "simulated"};
     const auto give = [&](const std::string& control, const std::string& value) {
-      form.begin(web::FormInput{control, value});
+      form.begin(FormInput{control, value});
       form.part("course");
       form.check("learn", "", learns);
       form.number("length", "", length_mm, 140.0F, 230.0F, "mm");
