@@ -220,8 +220,9 @@ bool is_address_or_localhost(std::string_view authority) {
 }
 
 Admission admit(const HttpRequest& request, std::string_view token) noexcept {
-  if (request.method != (request.path == "/open" ? "POST" : "GET"))
-    return refuse(405, "GET is all that there is, but for POST /open");
+  const std::string_view allowed = request.path == "/open" ? "POST" : "GET";
+  if (request.method != allowed)
+    return {405, Resource::page, "GET is all that there is, but for POST /open", {}, allowed};
   const auto host = request.header("Host");
   if (!host) return refuse(400, "one Host is needed");
   if (!is_address_or_localhost(*host))

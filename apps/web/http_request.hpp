@@ -52,6 +52,7 @@ struct Admission {
   Resource resource = Resource::page;
   std::string_view why;        ///< the reason of a refusal, in one line for the user
   std::string_view protocol{}; ///< the chosen subprotocol of Resource::foxglove
+  std::string_view allowed{};  ///< the method of the path, if `status` is 405
 };
 
 /// Grants or refuses a request: a GET, or the POST of a file. Host must be a numeric address or

@@ -55,11 +55,12 @@ std::string replaced(std::string_view rest, std::string_view mark, std::string_v
   }
 }
 
-/// Returns a whole answer with an error status. why: a line for people.
-std::string refusal(int status, std::string_view why) {
+/// Returns a whole answer with an error status. why: a line for people. allowed: the method of the
+/// path, if that is the error.
+std::string refusal(int status, std::string_view why, std::string_view allowed) {
   const std::string body = std::string(why) + "\n";
   std::string more = "Content-Security-Policy: default-src 'none'\r\n";
-  if (status == 405) more += "Allow: GET\r\n";
+  if (!allowed.empty()) more += "Allow: " + std::string(allowed) + "\r\n";
   if (status == 426) more += "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n";
   return answer_head(status, "text/plain; charset=utf-8", body.size()) + more + "\r\n" + body;
 }
@@ -98,9 +99,10 @@ void Server::Work::serve(Connection& connection, short events, HostTime now) {
   if (connection.stage() == Connection::Stage::socket) read_socket(connection, now);
 }
 
-void Server::Work::refuse(Connection& connection, int status, std::string_view why, HostTime now) {
+void Server::Work::refuse(Connection& connection, int status, std::string_view why, HostTime now,
+                          std::string_view allowed) {
   ++counts.refused;
-  connection.answer(refusal(status, why), nullptr, now);
+  connection.answer(refusal(status, why, allowed), nullptr, now);
 }
 
 void Server::Work::read_head(Connection& connection, HostTime now) {
@@ -115,7 +117,7 @@ void Server::Work::read_head(Connection& connection, HostTime now) {
   }
   const Admission admission = admit(head.request, token);
   if (admission.status != 200) {
-    refuse(connection, admission.status, admission.why, now);
+    refuse(connection, admission.status, admission.why, now, admission.allowed);
   } else if (admission.resource == Resource::page) {
     const std::string nonce = random_hex(16);
     const SharedBytes page = shared_bytes(page_with(nonce));

@@ -101,7 +101,9 @@ private:
   void begin_foxglove(HostTime now);
   void make_foxglove(HostTime now);
   void send_foxglove(HostTime now);
-  void refuse(Connection& connection, int status, std::string_view why, HostTime now);
+  /// `allowed`: the method of the path, with the status 405.
+  void refuse(Connection& connection, int status, std::string_view why, HostTime now,
+              std::string_view allowed = {});
   void send_frames(HostTime now);
   void send_weights(Connection& client, HostTime now);
   void send_frames(Connection& client, const std::optional<FrameStream::Shape>& shape,

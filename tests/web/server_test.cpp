@@ -119,7 +119,12 @@ TEST_SUITE("server") {
     CHECK(WebClient(*server).open_socket("Origin: http://evil.example\r\n") == 403);
     WebClient post(*server);
     post.send("POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
-    CHECK(post.answer().status == 405);
+    const auto refused = post.answer();
+    CHECK(refused.status == 405);
+    CHECK(refused.head.find("\r\nAllow: GET\r\n") != std::string::npos);
+    const auto opened = WebClient(*server).get("/open");
+    CHECK(opened.status == 405);
+    CHECK(opened.head.find("\r\nAllow: POST\r\n") != std::string::npos);
     WebClient noise(*server);
     noise.send("\x16\x03\x01\x02\r\n\r\n"); // the begin of TLS
     CHECK(noise.answer().status == 400);
