@@ -40,10 +40,10 @@ RunArguments arguments_for(const studio::Shape& shape, const RunArguments& first
   return next;
 }
 
-std::vector<std::string> named_gloves(const session::RunOptions& run) {
-  std::vector<std::string> gloves;
-  for (const std::string* glove : {&run.left, &run.right})
-    if (!glove->empty()) gloves.push_back(*glove);
+std::vector<studio::NamedGlove> named_gloves(const session::RunOptions& run) {
+  std::vector<studio::NamedGlove> gloves;
+  if (!run.left.empty()) gloves.push_back({run.left, Side::left});
+  if (!run.right.empty()) gloves.push_back({run.right, Side::right});
   return gloves;
 }
 

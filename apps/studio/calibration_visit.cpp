@@ -9,9 +9,9 @@
 
 namespace nendo::studio {
 
-CalibrationVisit::CalibrationVisit(std::string glove)
-    : name_(std::move(glove)), opening_(std::async(std::launch::async, [name = name_] {
-        return driver::open_glove(name, std::nullopt, gloves::glove_context());
+CalibrationVisit::CalibrationVisit(NamedGlove glove)
+    : name_(glove.spec), opening_(std::async(std::launch::async, [glove = std::move(glove)] {
+        return driver::open_glove(glove.spec, glove.side, gloves::glove_context());
       })) {}
 
 Result<driver::Glove*> CalibrationVisit::glove() {

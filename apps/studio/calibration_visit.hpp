@@ -15,7 +15,7 @@ namespace nendo::studio {
 class CalibrationVisit {
 public:
   /// Begins to open the glove in a thread of its own.
-  explicit CalibrationVisit(std::string glove);
+  explicit CalibrationVisit(NamedGlove glove);
 
   /// Returns the glove, which is valid as long as this; null: it is still being opened. Errors:
   /// those of open_glove().
@@ -28,7 +28,7 @@ public:
   const std::string& learns_for() const noexcept { return learns_for_; }
 
 private:
-  std::string name_;
+  std::string name_; ///< the glove's
   std::future<Result<std::unique_ptr<driver::Glove>>> opening_;
   std::unique_ptr<driver::Glove> glove_;
   std::string learns_for_;

@@ -38,7 +38,7 @@ std::string calibration_in_words(const sculpting::FoundCalibration& found) {
 
 } // namespace
 
-GloveBoard::GloveBoard(std::vector<std::string> named, gloves::CalibrationOptions calibration)
+GloveBoard::GloveBoard(std::vector<NamedGlove> named, gloves::CalibrationOptions calibration)
     : calibration_(std::move(calibration)), named_(std::move(named)), thread_([this] { watch(); }) {
 }
 
@@ -50,37 +50,38 @@ GloveBoard::~GloveBoard() {
 }
 
 void GloveBoard::watch() {
-  for (const std::string& spec : named_)
-    if (!over_) add(spec, {});
+  for (const NamedGlove& glove : named_)
+    if (!over_) add(glove, {});
   if (!named_.empty()) return;
   const auto watcher = driver::DeviceWatcher::open();
   if (!watcher) return; // the run, which looks for gloves itself, says why
   for (const driver::DeviceCandidate& candidate : (*watcher)->present())
-    if (!over_) add(candidate.spec, candidate);
+    if (!over_) add({candidate.spec}, candidate);
   while (!over_) {
     const auto event = (*watcher)->next(std::chrono::milliseconds(100));
-    if (event && event->attached) add(event->candidate.spec, event->candidate);
+    if (event && event->attached) add({event->candidate.spec}, event->candidate);
     if (event && !event->attached) remove(event->candidate);
   }
 }
 
 /// Opens a glove, and shows a device that is not one, or that may not be opened.
-void GloveBoard::add(std::string spec, const driver::DeviceCandidate& candidate) {
+void GloveBoard::add(NamedGlove named, const driver::DeviceCandidate& candidate) {
   const bool is_named = candidate.device.empty();
   if (!is_named && !candidate.identified) return;
   const auto device = std::make_shared<Device>();
   device->candidate = candidate;
-  device->spec = std::move(spec);
+  device->glove = std::move(named);
   {
     const std::lock_guard lock(mutex_);
     found_.push_back(device);
   }
-  if (device->spec.empty() || (!is_named && !candidate.may_open)) return;
-  auto glove = driver::open_glove(device->spec, std::nullopt, gloves::glove_context());
+  if (device->glove.spec.empty() || (!is_named && !candidate.may_open)) return;
+  const auto side = device->glove.side;
+  auto glove = driver::open_glove(device->glove.spec, side, gloves::glove_context());
   std::optional<gloves::OpenHand> hand;
   std::optional<Error> error;
   if (glove) {
-    hand = sculpting::hand_of(*std::move(glove), std::nullopt, nullptr, ignore);
+    hand = sculpting::hand_of(*std::move(glove), side, nullptr, ignore);
     if (const auto started = hand->glove->start(*hand->ring); !started) error = started.error();
   } else {
     error = glove.error();
@@ -140,9 +141,10 @@ void GloveBoard::read(Live& live) {
 DeviceCard GloveBoard::card_of(Live& live) const {
   const Device& device = *live.device;
   DeviceCard card;
-  card.spec = device.spec;
-  card.title = device.candidate.description.empty() ? device.spec : device.candidate.description;
-  if (device.spec.empty() && !device.candidate.tracker_spec.empty()) {
+  card.glove = device.glove;
+  card.title =
+      device.candidate.description.empty() ? device.glove.spec : device.candidate.description;
+  if (device.glove.spec.empty() && !device.candidate.tracker_spec.empty()) {
     card.state = State::tracker;
     card.words = "A tracker: `--left-wrist " + device.candidate.tracker_spec + "` moves a hand.";
     return card;

@@ -16,6 +16,7 @@
 
 #include "gloves/open_hand.hpp"
 #include "render/scene_frame.hpp"
+#include "studio/wish.hpp"
 
 namespace nendo::studio {
 
@@ -26,7 +27,7 @@ struct DeviceCard {
   std::string title;            ///< the glove's model and hand, or the device's description
   std::string words;            ///< its state, as a sentence
   std::string remedy;           ///< what the user can do; empty: nothing is to do
-  std::string spec;             ///< the argument for open_glove(); empty: not a glove
+  NamedGlove glove;             ///< none: the device is not one
   std::optional<Side> side{};   ///< the side of an open glove
   bool is_uncalibrated = false; ///< a person wears it with an average hand's calibration
   bool is_simulated = false;
@@ -36,7 +37,7 @@ class GloveBoard {
 public:
   /// Opens the gloves `named` or, if there are none, each glove that is plugged in now or later.
   /// Opening takes seconds and happens in a thread of its own.
-  GloveBoard(std::vector<std::string> named, gloves::CalibrationOptions calibration);
+  GloveBoard(std::vector<NamedGlove> named, gloves::CalibrationOptions calibration);
   /// Closes the gloves, so that a run can open them. Blocks while one is being opened.
   ~GloveBoard();
   GloveBoard(const GloveBoard&) = delete;
@@ -54,7 +55,7 @@ private:
   /// A device between the thread that finds and opens it and the main thread.
   struct Device {
     driver::DeviceCandidate candidate;
-    std::string spec;
+    NamedGlove glove;
     std::optional<gloves::OpenHand> hand; ///< open and started
     std::optional<Error> error;
     bool is_gone = false;
@@ -66,14 +67,14 @@ private:
   };
 
   void watch(); ///< the thread's work
-  void add(std::string spec, const driver::DeviceCandidate& candidate);
+  void add(NamedGlove glove, const driver::DeviceCandidate& candidate);
   void remove(const driver::DeviceCandidate& candidate);
   void take_found();
   void read(Live& live);
   DeviceCard card_of(Live& live) const;
 
   gloves::CalibrationOptions calibration_;
-  std::vector<std::string> named_;
+  std::vector<NamedGlove> named_;
   std::mutex mutex_; ///< guards found_ and Device::is_gone
   std::vector<std::shared_ptr<Device>> found_;
   std::vector<Live> live_;

@@ -15,7 +15,7 @@ using forms::Form;
 
 class PageCalibration {
 public:
-  explicit PageCalibration(std::string glove) : visit_(std::move(glove)) {}
+  explicit PageCalibration(NamedGlove glove) : visit_(std::move(glove)) {}
 
   /// Describes the controls and the hands. Returns Go to the start when it is over. Errors: those
   /// of open_glove() and of the course.

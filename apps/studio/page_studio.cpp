@@ -123,7 +123,7 @@ private:
   }
 
   Wish left_for() const override { return view_ ? view_->left_for() : Wish{}; }
-  std::string found_glove() const override { return start_ ? start_->found_glove() : ""; }
+  NamedGlove found_glove() const override { return start_ ? start_->found_glove() : NamedGlove{}; }
 
   void leave_screen() override {
     if (calibration_) learns_for_ = calibration_->learns_for();
@@ -138,7 +138,7 @@ private:
     replay_ = std::make_unique<PageReplay>(*server_, file);
   }
 
-  void enter_calibration(const std::string& glove) override {
+  void enter_calibration(const NamedGlove& glove) override {
     calibration_ = std::make_unique<PageCalibration>(glove);
   }
 

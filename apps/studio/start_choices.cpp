@@ -66,8 +66,9 @@ StartChoices::StartChoices(const StartOptions& options)
     : models_(models()), gallery_(files_of(models_)), board_(options.gloves, options.calibration),
       chosen_(models_.size()) {
   if (options.gloves.empty())
-    simulated_.emplace(std::vector<std::string>{"sim:wave?hand=left", "sim:wave?hand=right&seed=2"},
-                       gloves::CalibrationOptions{});
+    simulated_.emplace(
+        std::vector<NamedGlove>{{"sim:wave?hand=left"}, {"sim:wave?hand=right&seed=2"}},
+        gloves::CalibrationOptions{});
   for (const ModeCard& card : modes) {
     auto image = render::read_png(cli::shipped_model("").parent_path().parent_path() / "pictures" /
                                   card.picture);
@@ -138,7 +139,7 @@ void StartChoices::describe_device(Form& form, const DeviceCard& card, Wish& wis
   if (card.side && card.state == State::streaming) {
     const char* const words = card.is_uncalibrated ? "Calibrate..." : "Calibrate again...";
     if (form.button(words, "Takes a minute. Each finger then moves as yours does."))
-      wish = Go{Screen::calibration, card.spec};
+      wish = Go{Screen::calibration, card.glove};
   }
   form.separator();
 }
@@ -158,9 +159,9 @@ Wish StartChoices::describe_hands(Form& form) {
   return wish;
 }
 
-std::string StartChoices::found_glove() const {
+NamedGlove StartChoices::found_glove() const {
   for (const DeviceCard& card : board_.cards())
-    if (card.side && card.state == DeviceCard::State::streaming) return card.spec;
+    if (card.side && card.state == DeviceCard::State::streaming) return card.glove;
   return {};
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "render/scene_frame.hpp"
 #include "forms/form.hpp"
+#include "render/scene_frame.hpp"
 #include "studio/glove_board.hpp"
 #include "studio/model_gallery.hpp"
 #include "studio/wish.hpp"
@@ -18,7 +18,7 @@ using forms::Form;
 
 /// What the command line says about the hands.
 struct StartOptions {
-  std::vector<std::string> gloves; ///< those that were named
+  std::vector<NamedGlove> gloves; ///< those that were named
   gloves::CalibrationOptions calibration;
 };
 
@@ -36,8 +36,8 @@ public:
   Wish describe_hands(Form& form);
   /// Returns whether the pictures of the models are drawn.
   bool is_complete() const { return gallery_.is_complete(); }
-  /// Returns the GLOVE of the first glove that streams; empty: none.
-  std::string found_glove() const;
+  /// Returns the first glove that streams, or none.
+  NamedGlove found_glove() const;
 
 private:
   struct Model {

@@ -18,8 +18,8 @@ public:
   Wish show(viewer::SceneWindow& window);
   /// Returns whether the pictures of the models are drawn.
   bool is_complete() const { return choices_.is_complete(); }
-  /// Returns the GLOVE of the first glove that streams; empty: none.
-  std::string found_glove() const { return choices_.found_glove(); }
+  /// Returns the first glove that streams, or none.
+  NamedGlove found_glove() const { return choices_.found_glove(); }
 
 private:
   StartChoices choices_;

@@ -109,7 +109,7 @@ private:
   }
 
   Wish left_for() const override { return view_ ? view_->left_for() : Wish{}; }
-  std::string found_glove() const override { return start_ ? start_->found_glove() : ""; }
+  NamedGlove found_glove() const override { return start_ ? start_->found_glove() : NamedGlove{}; }
   void open(const std::string& file) override { begin_with(file); }
 
   void leave_screen() override {
@@ -125,7 +125,7 @@ private:
     screen_ = Screen::timeline;
   }
 
-  void enter_calibration(const std::string& glove) override {
+  void enter_calibration(const NamedGlove& glove) override {
     screen_ = Screen::calibration;
     calibration_ = std::make_unique<WindowCalibration>(*window_, glove);
   }

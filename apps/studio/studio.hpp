@@ -19,7 +19,7 @@ namespace nendo::studio {
 struct StudioOptions {
   session::ViewOptions view;
   std::optional<FirstTimeline> timeline;  ///< nothing: the start is shown first
-  std::vector<std::string> gloves;        ///< those that the command line names
+  std::vector<NamedGlove> gloves;         ///< those that the command line names
   gloves::CalibrationOptions calibration; ///< that the start screen shows
 };
 

@@ -49,12 +49,12 @@ std::optional<Shape> StudioFlow::take_next() {
   return std::exchange(next_, std::nullopt);
 }
 
-void StudioFlow::calibrate(std::string glove) {
-  for (const std::string& named : options_.gloves)
-    if (glove.empty()) glove = named;
-  if (glove.empty()) glove = found_glove();
+void StudioFlow::calibrate(NamedGlove glove) {
+  for (const NamedGlove& named : options_.gloves)
+    if (glove.spec.empty()) glove = named;
+  if (glove.spec.empty()) glove = found_glove();
   leave_screen();
-  if (glove.empty())
+  if (glove.spec.empty())
     return show_error("No glove is here to calibrate. Plug one in, and choose Calibrate beside its "
                       "hand.");
   enter_calibration(glove);

@@ -31,20 +31,20 @@ protected:
 
 private:
   /// Calibrates this glove, or if none is named, the one that is there.
-  void calibrate(std::string glove);
+  void calibrate(NamedGlove glove);
 
   /// Returns where the user went when the run was left.
   virtual Wish left_for() const = 0;
   virtual void begin_run(const Shape& shape) { next_ = shape; }
   /// Opens a file; empty: asks for one.
   virtual void open(const std::string& file) = 0;
-  /// Returns the GLOVE that the start shows; empty: none.
-  virtual std::string found_glove() const = 0;
+  /// Returns the glove that the start shows, or none.
+  virtual NamedGlove found_glove() const = 0;
   /// Ends the screen that is shown, and so closes its gloves. The start follows.
   virtual void leave_screen() = 0;
   /// Shows a recording or a timeline; without a file, the one that is open.
   virtual void enter_timeline(const std::string& file) = 0;
-  virtual void enter_calibration(const std::string& glove) = 0;
+  virtual void enter_calibration(const NamedGlove& glove) = 0;
 };
 
 } // namespace nendo::studio

@@ -6,7 +6,7 @@
 
 namespace nendo::studio {
 
-WindowCalibration::WindowCalibration(viewer::SceneWindow& window, std::string glove)
+WindowCalibration::WindowCalibration(viewer::SceneWindow& window, NamedGlove glove)
     : visit_(std::move(glove)) {
   window.clear_model();
 }

@@ -12,7 +12,7 @@ namespace nendo::studio {
 
 class WindowCalibration {
 public:
-  WindowCalibration(viewer::SceneWindow& window, std::string glove);
+  WindowCalibration(viewer::SceneWindow& window, NamedGlove glove);
 
   /// Draws one picture. Returns Go to the start when it is over. Errors: those of open_glove() and
   /// of the screen.

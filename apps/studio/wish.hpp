@@ -3,9 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
+
+#include <nendo/base/side.hpp>
 
 namespace nendo::studio {
 
@@ -41,10 +44,15 @@ struct Shape {
   Hands hands = Hands::found;
   std::string learns_for{}; ///< the wearer whose gloves it continues to learn; empty: no wearer
 };
+/// A glove, as the arguments of open_glove().
+struct NamedGlove {
+  std::string spec{};         ///< empty: none
+  std::optional<Side> side{}; ///< the hand that wears it; nothing: the one that it is made for
+};
 /// Another screen.
 struct Go {
   Screen screen = Screen::start;
-  std::string glove{}; ///< the GLOVE to calibrate; empty: not chosen yet
+  NamedGlove glove{}; ///< the one to calibrate; none: not chosen yet
 };
 /// A model, a puppet, a recording or a timeline, by its name's ending.
 struct Open {

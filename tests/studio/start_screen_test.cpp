@@ -25,7 +25,7 @@ struct Seat : test::StudioSeat {
   std::unique_ptr<StartScreen> start;
   Wish wish;
 
-  explicit Seat(std::vector<std::string> gloves = {},
+  explicit Seat(std::vector<NamedGlove> gloves = {},
                 const viewer::WindowLook& look = {{1280, 800}, viewer::Theme::light, 1.0F})
       : StudioSeat(look) {
     ::setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
@@ -90,14 +90,25 @@ TEST_SUITE("start_screen" * doctest::skip(!test::restraint_is_counted)) {
   TEST_CASE("a glove that streams is shown with its hand, and one that is not there says why") {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
-    Seat seat({"sim:wave?hand=left", "serial:/dev/there-is-no-such-port"});
+    Seat seat({{"sim:wave?hand=left"}, {"serial:/dev/there-is-no-such-port"}});
     CHECK(seat.comes("simulated glove, 22 sensors, motion wave, left hand"));
     CHECK(seat.comes("serial:/dev/there-is-no-such-port"));
     REQUIRE(seat.comes("Calibrate again..."));
     seat.press("Calibrate again...");
     REQUIRE(std::holds_alternative<Go>(seat.wish));
     CHECK(std::get<Go>(seat.wish).screen == Screen::calibration);
-    CHECK(std::get<Go>(seat.wish).glove == "sim:wave?hand=left");
+    CHECK(std::get<Go>(seat.wish).glove.spec == "sim:wave?hand=left");
+  }
+
+  TEST_CASE("a glove that does not know its hand is shown on the one that was named for it") {
+    const test::MemoryScreen screen;
+    if (!screen.is_there()) return;
+    Seat seat({{"sim:rest", Side::left}});
+    REQUIRE(seat.comes("simulated glove, 22 sensors, motion rest, left hand"));
+    REQUIRE(seat.comes("Calibrate again..."));
+    seat.press("Calibrate again...");
+    REQUIRE(std::holds_alternative<Go>(seat.wish));
+    CHECK(std::get<Go>(seat.wish).glove.side == Side::left);
   }
 
   TEST_CASE("no two controls overlap, and no text is cut, at any size") {
@@ -108,7 +119,7 @@ TEST_SUITE("start_screen" * doctest::skip(!test::restraint_is_counted)) {
           viewer::WindowLook{{1920, 1080}, viewer::Theme::dark, 1.0F},
           viewer::WindowLook{{2560, 1440}, viewer::Theme::light, 2.0F},
           viewer::WindowLook{{3840, 2160}, viewer::Theme::light, 2.0F}}) {
-      Seat seat({"sim"}, look);
+      Seat seat({{"sim"}}, look);
       CAPTURE(look.size.width);
       REQUIRE(seat.comes("Calibrate again..."));
       seat.show();

@@ -346,7 +346,7 @@ TEST_SUITE("run_web") {
     REQUIRE(studio.sees("With this model"));
     CHECK(studio.browser.follower->name.empty());
     for (const auto& [tab, words] : {std::pair{"Timeline", "Record while the hands shape"},
-                                     {"Calibration", "your name"},
+                                     {"Calibration", "Calibrate the left hand"},
                                      {"Timeline", "Record while the hands shape"},
                                      {"Start", "With this model"}}) {
       CAPTURE(words);
