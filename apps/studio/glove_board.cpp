@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <nendo/base/text.hpp>
-#include <nendo/driver/device_watcher.hpp>
 #include <nendo/flow/loop_settings.hpp>
 #include <nendo/sculpting/find_wearer.hpp>
 
@@ -38,9 +37,10 @@ std::string calibration_in_words(const sculpting::FoundCalibration& found) {
 
 } // namespace
 
-GloveBoard::GloveBoard(std::vector<NamedGlove> named, gloves::CalibrationOptions calibration)
-    : calibration_(std::move(calibration)), named_(std::move(named)), thread_([this] { watch(); }) {
-}
+GloveBoard::GloveBoard(std::vector<NamedGlove> named, gloves::CalibrationOptions calibration,
+                       OpenWatcher open_watcher)
+    : calibration_(std::move(calibration)), named_(std::move(named)),
+      open_watcher_(std::move(open_watcher)), thread_([this] { watch(); }) {}
 
 GloveBoard::~GloveBoard() {
   over_ = true;
@@ -53,7 +53,7 @@ void GloveBoard::watch() {
   for (const NamedGlove& glove : named_)
     if (!over_) add(glove, {});
   if (!named_.empty()) return;
-  const auto watcher = driver::DeviceWatcher::open();
+  const auto watcher = open_watcher_();
   if (!watcher) return; // the run, which looks for gloves itself, says why
   for (const driver::DeviceCandidate& candidate : (*watcher)->present())
     if (!over_) add({candidate.spec}, candidate);

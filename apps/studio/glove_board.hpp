@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include <nendo/driver/device_watcher.hpp>
 #include <nendo/driver/devices.hpp>
 #include <nendo/flow/hand_input.hpp>
 
@@ -35,9 +37,12 @@ struct DeviceCard {
 
 class GloveBoard {
 public:
-  /// Opens the gloves `named` or, if there are none, each glove that is plugged in now or later.
-  /// Opening takes seconds and happens in a thread of its own.
-  GloveBoard(std::vector<NamedGlove> named, gloves::CalibrationOptions calibration);
+  using OpenWatcher = std::function<Result<std::unique_ptr<driver::DeviceWatcher>>()>;
+
+  /// Opens the gloves `named` or, if there are none, each glove that is plugged in now or later, as
+  /// the watcher reports them. Opening takes seconds and happens in a thread of its own.
+  GloveBoard(std::vector<NamedGlove> named, gloves::CalibrationOptions calibration,
+             OpenWatcher open_watcher = driver::DeviceWatcher::open);
   /// Closes the gloves, so that a run can open them. Blocks while one is being opened.
   ~GloveBoard();
   GloveBoard(const GloveBoard&) = delete;
@@ -75,6 +80,7 @@ private:
 
   gloves::CalibrationOptions calibration_;
   std::vector<NamedGlove> named_;
+  OpenWatcher open_watcher_;
   std::mutex mutex_; ///< guards found_ and Device::is_gone
   std::vector<std::shared_ptr<Device>> found_;
   std::vector<Live> live_;
