@@ -1,5 +1,6 @@
 #include "studio/page_run.hpp"
 
+#include <filesystem>
 #include <utility>
 
 #include "session/kept_state.hpp"
@@ -10,6 +11,17 @@ namespace nendo::studio {
 
 using session::Asks;
 using session::RunStatus;
+
+namespace {
+
+/// A file that was sent and is not opened does not stay.
+void remove_sent(const Wish& wish) {
+  const auto* const file = std::get_if<Open>(&wish);
+  std::error_code ignored;
+  if (file != nullptr && file->was_sent) std::filesystem::remove(file->file, ignored);
+}
+
+} // namespace
 
 Wish describe_bar(web::PageForm& form, Screen now, const std::string& file) {
   Wish wish;
@@ -24,6 +36,10 @@ Wish describe_bar(web::PageForm& form, Screen now, const std::string& file) {
   return wish;
 }
 
+PageRun::~PageRun() {
+  remove_sent(waiting_);
+}
+
 void PageRun::update(const RunStatus& status, Asks& asks) {
   form_.begin(server_.next_input(web::FormKind::screen));
   const bool is_modified = status.saving->is_modified(status.frame);
@@ -36,7 +52,7 @@ void PageRun::update(const RunStatus& status, Asks& asks) {
   if (const auto file = server_.take_file()) {
     const auto stored = store_sent(file->name, file->bytes);
     if (stored)
-      go(Open{*stored}, status, asks);
+      go(Open{*stored, true}, status, asks);
     else
       server_.report(stored.error().message, true);
   }
@@ -88,7 +104,7 @@ void PageRun::go(const Wish& wish, const RunStatus& status, Asks& asks) {
   if (const auto* const there = std::get_if<Go>(&wish))
     if (there->screen == Screen::timeline || (there->screen == Screen::shaping && replay_))
       return go_to(there->screen, status, asks);
-  waiting_ = wish;
+  remove_sent(std::exchange(waiting_, wish));
   if (!asks_to_save_ || !status.saving->is_modified(status.frame)) leave(asks);
 }
 
@@ -102,7 +118,7 @@ void PageRun::ask(Asks& asks) {
   }
   if (form_.button("Discard", "")) leave(asks);
   if (!form_.button("Stay", "")) return;
-  waiting_ = {};
+  remove_sent(std::exchange(waiting_, {}));
   saves_first_ = false;
 }
 

@@ -25,6 +25,9 @@ public:
   /// that is left does not write it.
   PageRun(web::Server& server, std::string file, bool asks_to_save)
       : server_(server), file_(std::move(file)), asks_to_save_(asks_to_save) {}
+  ~PageRun() override; ///< removes a file that was sent, if the user has not decided about it
+  PageRun(const PageRun&) = delete;
+  PageRun& operator=(const PageRun&) = delete;
 
   void update(const session::RunStatus& status, session::Asks& asks) override;
   void report(const session::Report& message) override;

@@ -97,7 +97,7 @@ private:
       form_.line("file name", file_);
       form_.lines_of(2);
       const auto look = file_.empty() ? Form::Look::grey : Form::Look::chosen;
-      if (form_.button("Open", "A file on the machine of the gloves.", look)) open(file_);
+      if (form_.button("Open", "A file on the machine of the gloves.", look)) open({file_});
       if (form_.button("Cancel", "")) is_opening_ = false;
       form_.file("Choose a file of this device", "It is copied to the machine of the gloves.");
     }
@@ -153,9 +153,11 @@ private:
     next_ = shape;
   }
 
-  void open(const std::string& file) override {
+  void open(const Open& wanted) override {
+    const std::string& file = wanted.file;
     is_opening_ = file.empty();
-    if (file.empty()) return;
+    if (is_opening_) return;
+    received_ = wanted.was_sent ? file : "";
     // Who uses the page from elsewhere shall learn nothing of other files.
     if (const auto fine = check_openable(file); !fine) return show_error(fine.error().message);
     std::error_code error;
@@ -168,8 +170,7 @@ private:
     received_.clear();
     const auto stored = store_sent(file.name, file.bytes);
     if (!stored) return show_error(stored.error().message);
-    received_ = *stored;
-    open(*stored);
+    open({*stored, true});
   }
 
   std::shared_ptr<web::Server> server_;

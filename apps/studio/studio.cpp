@@ -110,7 +110,7 @@ private:
 
   Wish left_for() const override { return view_ ? view_->left_for() : Wish{}; }
   NamedGlove found_glove() const override { return start_ ? start_->found_glove() : NamedGlove{}; }
-  void open(const std::string& file) override { begin_with(file); }
+  void open(const Open& wanted) override { begin_with(wanted.file); }
 
   void leave_screen() override {
     start_.reset();

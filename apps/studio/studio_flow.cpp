@@ -18,7 +18,7 @@ bool StudioFlow::goes_on() {
 
 void StudioFlow::follow(const Wish& wish) {
   if (const auto* const shape = std::get_if<Shape>(&wish)) begin_run(*shape);
-  if (const auto* const file = std::get_if<Open>(&wish)) open(file->file);
+  if (const auto* const file = std::get_if<Open>(&wish)) open(*file);
   if (std::holds_alternative<Quit>(wish)) is_over_ = true;
   const auto* const there = std::get_if<Go>(&wish);
   if (there == nullptr) return;

@@ -36,8 +36,8 @@ private:
   /// Returns where the user went when the run was left.
   virtual Wish left_for() const = 0;
   virtual void begin_run(const Shape& shape) { next_ = shape; }
-  /// Opens a file; empty: asks for one.
-  virtual void open(const std::string& file) = 0;
+  /// Opens the file; without its name, asks for one.
+  virtual void open(const Open& wanted) = 0;
   /// Returns the glove that the start shows, or none.
   virtual NamedGlove found_glove() const = 0;
   /// Ends the screen that is shown, and so closes its gloves. The start follows.

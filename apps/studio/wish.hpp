@@ -57,6 +57,7 @@ struct Go {
 /// A model, a puppet, a recording or a timeline, by its name's ending.
 struct Open {
   std::string file;
+  bool was_sent = false; ///< a browser sent it; it is removed if it is not opened
 };
 struct Quit {};
 

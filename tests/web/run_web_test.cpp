@@ -89,24 +89,32 @@ struct Browser {
   }
 };
 
+constexpr const char* no_model = "f 1 2 3 4 5\nv nan nan";
+constexpr const char* tetrahedron =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+
 /// A studio on a page, which keeps its files in a folder, and a browser that shows it.
 struct Studio {
   test::Program program;
   Address address;
   Browser browser;
 
-  explicit Studio(const fs::path& folder)
-      : program(started_in(folder)), address(address_of(program)), browser{address, {}, {}} {
+  explicit Studio(const fs::path& folder, const std::string& left = "sim:rest")
+      : program(started_in(folder, left)), address(address_of(program)), browser{address, {}, {}} {
     REQUIRE(address.token.size() == 32);
     browser.connect();
   }
   /// Waits for a form with these words; comes again after another model.
-  bool sees(const std::string& words) {
+  bool sees(const std::string& words) { return waits_for(words, true); }
+  /// Waits for one without them.
+  bool sees_no(const std::string& words) { return waits_for(words, false); }
+  bool waits_for(const std::string& words, bool is_there) {
     while (const auto frame = browser.client->next()) {
       if (frame->opcode == 8) browser.connect();
       const std::string text(reinterpret_cast<const char*>(frame->payload.data()),
                              frame->payload.size());
-      if (text[0] == 12 && text.find(words) != std::string::npos) return true;
+      const bool is_screen = text[0] == 12 && text.find("\"screen\"") != std::string::npos;
+      if (is_screen && is_there == (text.find(words) != std::string::npos)) return true;
     }
     return false;
   }
@@ -121,6 +129,11 @@ struct Studio {
                 "\r\n\r\n" + bytes);
     return client.answer().status;
   }
+  /// Waits for another model or none, as after the end of a run.
+  void comes_again() {
+    CHECK(browser.client->close_code() == 1012);
+    browser.connect();
+  }
   /// Waits for a run with this model.
   void follows_run_of(const std::string& model) {
     CHECK(browser.client->close_code() == 1012);
@@ -132,7 +145,7 @@ struct Studio {
   }
 
 private:
-  static test::Program started_in(const fs::path& folder) {
+  static test::Program started_in(const fs::path& folder, const std::string& left) {
     const fs::path before = fs::current_path();
     fs::current_path(folder); // where the files go
     ::setenv("XDG_STATE_HOME", folder.c_str(), 1);
@@ -143,7 +156,7 @@ private:
         fs::current_path(before);
       }
     } const back{before};
-    return test::Program({"studio", "--web", "0", "--left", "sim:rest"});
+    return test::Program({"studio", "--web", "0", "--left", left});
   }
 };
 
@@ -358,32 +371,55 @@ TEST_SUITE("run_web") {
     REQUIRE(studio.sees("head.obj: has no puppet yet"));
     studio.press("Close");
     studio.press("Head"); // no more
-    CHECK(studio.send("hostile.obj", "f 1 2 3 4 5\nv nan nan") == 200);
+    CHECK(studio.send("hostile.obj", no_model) == 200);
     REQUIRE(studio.sees("hostile.obj"));
     CHECK_FALSE(fs::exists(folder.path() / "hostile.obj"));
     studio.press("Close");
     CHECK(studio.send("program.sh", "rm") == 200);
     REQUIRE(studio.sees("program.sh: the studio opens"));
     studio.press("Close");
-    const std::string scan =
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
     studio.press("Open a file...");
     studio.press("file name", "/etc/passwd");
     studio.press("Open");
     REQUIRE(studio.sees("/etc/passwd: the studio opens"));
     studio.press("Close");
-    CHECK(studio.send("scan.obj", scan) == 200);
+    CHECK(studio.send("scan.obj", tetrahedron) == 200);
     studio.follows_run_of("scan.obj");
-    CHECK(studio.send("during.obj", scan) == 200);
+    CHECK(studio.send("during.obj", tetrahedron) == 200);
     studio.press("Discard"); // if the hands have moved the model
     studio.follows_run_of("during.obj");
     studio.press("Start");
     studio.press("Discard");
-    CHECK(studio.browser.client->close_code() == 1012);
-    studio.browser.connect();
+    studio.comes_again();
     REQUIRE(studio.sees("With this model"));
     studio.program.signal(SIGTERM);
     CHECK(studio.program.wait().exit_code == 0);
+  }
+
+  TEST_CASE("a file that was sent during a run stays only if it is opened") {
+    const test::TemporaryFolder folder;
+    Studio studio(folder.path(), "sim:sculpt?seed=7");
+    const auto stays = [&](const char* name) { return fs::exists(folder.path() / name); };
+    REQUIRE(studio.sees("With this model"));
+    CHECK(studio.send("scan.obj", tetrahedron) == 200);
+    studio.follows_run_of("scan.obj");
+    REQUIRE(studio.sees("scan.obj *"));         // the hands have moved it,
+    studio.browser.client->send_text("commit"); // and it stays so
+    CHECK(studio.send("unwanted.obj", tetrahedron) == 200);
+    REQUIRE(studio.sees("Save the shape of"));
+    CHECK(stays("unwanted.obj"));
+    studio.press("Stay");
+    REQUIRE(studio.sees_no("Save the shape of"));
+    CHECK_FALSE(stays("unwanted.obj"));
+    CHECK(studio.send("forgotten.obj", tetrahedron) == 200);
+    CHECK(test::eventually([&] { return studio.send("hostile.obj", no_model) == 200; }));
+    REQUIRE(studio.sees("Save the shape of"));
+    studio.press("Discard");
+    studio.comes_again();
+    REQUIRE(studio.sees("hostile.obj"));
+    CHECK_FALSE(stays("hostile.obj"));
+    CHECK_FALSE(stays("forgotten.obj"));
+    CHECK(stays("scan.obj"));
   }
 
   TEST_CASE("a recording that was sent to the studio stays when another file fails") {
