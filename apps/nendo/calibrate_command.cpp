@@ -199,7 +199,7 @@ int calibrate_in_window(const Options& options) {
   if (const auto started = screen.start(); !started) return cli::report(started.error());
   std::optional<Result<studio::CalibrationOutcome>> outcome;
   while (!outcome) {
-    if (cli::stop_requested()) screen.leave();
+    if (cli::stop_requested() || (*window)->take_close_request()) screen.leave();
     outcome = screen.show(**window);
   }
   if (!*outcome) return cli::report(outcome->error());

@@ -47,7 +47,11 @@ Wish Bar::take_wish() {
 }
 
 void Bar::ask(const std::string& what) {
-  question_ = what;
+  question_ = Question{"Save " + what + "?"};
+}
+
+void Bar::ask_to_discard(const std::string& what) {
+  question_ = Question{"Discard " + what + "?", false};
 }
 
 void Bar::ask_where_to_save() {
@@ -102,18 +106,20 @@ void Bar::follow_keys() {
 }
 
 void Bar::draw_question() {
-  if (question_.empty()) return;
+  if (!question_) return;
   if (!ImGui::IsPopupOpen(question_title)) ImGui::OpenPopup(question_title);
   if (!viewer::begin_question(question_title)) return;
-  ImGui::Text("Save %s?", question_.c_str());
+  ImGui::TextUnformatted(question_->words.c_str());
   ImGui::Dummy({0.0F, em(0.3F)});
-  if (viewer::button("Save", em(6.0F))) answer_ = Answer::save;
-  ImGui::SameLine();
+  if (question_->offers_to_save) {
+    if (viewer::button("Save", em(6.0F))) answer_ = Answer::save;
+    ImGui::SameLine();
+  }
   if (viewer::button("Discard", em(6.0F))) answer_ = Answer::discard;
   ImGui::SameLine();
   if (viewer::button("Stay", em(6.0F)) || viewer::pressed(GLFW_KEY_ESCAPE)) answer_ = Answer::stay;
   if (answer_) {
-    question_.clear();
+    question_.reset();
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
@@ -121,7 +127,7 @@ void Bar::draw_question() {
 
 void Bar::draw_error() {
   constexpr const char* title = "That did not work";
-  if (error_.empty() || !question_.empty()) return; // one after the other
+  if (error_.empty() || question_) return; // one after the other
   if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   if (!viewer::begin_question(title)) return;
   ImGui::PushTextWrapPos(em(34.0F));

@@ -44,6 +44,8 @@ public:
 
   /// Asks in a dialog whether unsaved changes are saved. `what` is "the shape" or a file.
   void ask(const std::string& what);
+  /// Asks whether `what`, which cannot be saved, is discarded.
+  void ask_to_discard(const std::string& what);
   /// Opens the dialog that saves the shape; take_save() has the result.
   void ask_where_to_save();
   /// Opens the dialog that opens a file.
@@ -51,7 +53,7 @@ public:
   /// Shows a message about something that failed, until the user closes it.
   void show_error(const std::string& message) { error_ = message; }
   /// Returns whether a dialog is open.
-  bool has_dialog() const noexcept { return dialog_.is_open() || !question_.empty(); }
+  bool has_dialog() const noexcept { return dialog_.is_open() || question_; }
 
 private:
   void draw();
@@ -64,7 +66,11 @@ private:
   viewer::SceneWindow& window_;
   BarState state_;
   FileDialog dialog_;
-  std::string question_;
+  struct Question {
+    std::string words;
+    bool offers_to_save = true;
+  };
+  std::optional<Question> question_;
   std::string error_;
   std::vector<std::string> recent_; ///< the files of the menu, since it was opened
   Wish wish_;

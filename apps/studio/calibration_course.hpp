@@ -17,8 +17,8 @@
 #include "calibrate/guided_calibration.hpp"
 #include "calibrate/pose_advice.hpp"
 #include "calibrate/wearer_file.hpp"
-#include "studio/calibration_scene.hpp"
 #include "forms/form.hpp"
+#include "studio/calibration_scene.hpp"
 
 namespace nendo::studio {
 
@@ -84,6 +84,9 @@ public:
     return std::exchange(outcome_, std::nullopt);
   }
 
+  /// Returns whether poses are taken that nothing has kept yet, so that they are lost if this is
+  /// destroyed.
+  bool has_unkept_poses() const noexcept { return guide_ && guide_->has_any() && !outcome_; }
   Side side() const noexcept { return side_; }
   const std::optional<calibrate::FinishedCalibration>& finished() const noexcept {
     return finished_;

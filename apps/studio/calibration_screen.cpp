@@ -156,7 +156,6 @@ std::optional<Result<CalibrationOutcome>> CalibrationScreen::show(viewer::SceneW
   if (course_.picture().ring) draw_ring(window);
   if (!course_.picture().joints.empty()) draw_captions(window);
   window.end_picture();
-  if (window.take_close_request()) course_.leave();
   return course_.take_outcome();
 }
 

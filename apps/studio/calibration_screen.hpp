@@ -18,11 +18,13 @@ public:
 
   /// Starts the glove. Errors: those of driver::Glove::start().
   Result<void> start() { return course_.start(); }
-  /// Draws one picture. Returns nothing while the calibration continues. Error: failed (the poses
-  /// could not be kept).
+  /// Draws one picture. Returns nothing while the calibration continues, also if the window is to
+  /// be closed. Error: failed (the poses could not be kept).
   std::optional<Result<CalibrationOutcome>> show(viewer::SceneWindow& window);
   /// Ends at the next picture, as CalibrationCourse::leave().
   void leave() { course_.leave(); }
+  /// As CalibrationCourse.
+  bool has_unkept_poses() const noexcept { return course_.has_unkept_poses(); }
 
 private:
   void look_by(viewer::SceneWindow& window);

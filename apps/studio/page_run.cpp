@@ -12,17 +12,6 @@ namespace nendo::studio {
 using session::Asks;
 using session::RunStatus;
 
-namespace {
-
-/// A file that was sent and is not opened does not stay.
-void remove_sent(const Wish& wish) {
-  const auto* const file = std::get_if<Open>(&wish);
-  std::error_code ignored;
-  if (file != nullptr && file->was_sent) std::filesystem::remove(file->file, ignored);
-}
-
-} // namespace
-
 Wish describe_bar(web::PageForm& form, Screen now, const std::string& file) {
   Wish wish;
   form.part("bar");
@@ -34,6 +23,12 @@ Wish describe_bar(web::PageForm& form, Screen now, const std::string& file) {
   }
   if (!file.empty()) form.text(file, Form::Tone::faint);
   return wish;
+}
+
+void remove_sent(const Wish& wish) {
+  const auto* const file = std::get_if<Open>(&wish);
+  std::error_code ignored;
+  if (file != nullptr && file->was_sent) std::filesystem::remove(file->file, ignored);
 }
 
 PageRun::~PageRun() {

@@ -19,6 +19,9 @@ using forms::Form;
 /// Describes the tabs, and the name of the file. Returns what was clicked.
 Wish describe_bar(web::PageForm& form, Screen now, const std::string& file);
 
+/// Removes the file of a wish that is not followed, if a browser sent it.
+void remove_sent(const Wish& wish);
+
 class PageRun final : public session::Observer {
 public:
   /// `file` is the model's name. `asks_to_save`: leaving asks whether the shape is saved, and a run

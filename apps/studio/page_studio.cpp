@@ -67,7 +67,7 @@ private:
 
   void show_one() {
     form_.begin(server_->next_input(web::FormKind::screen));
-    follow_seen(describe_bar(form_, screen(), {}));
+    follow_safely(describe_bar(form_, screen(), {}));
     show_dialog();
     const Screen now = screen(); // the bar and the dialog may lead to another one
     PageFigures figures;
@@ -87,7 +87,9 @@ private:
   }
 
   void show_dialog() {
-    if (!error_.empty()) {
+    if (is_wish(waiting_)) {
+      ask();
+    } else if (!error_.empty()) {
       form_.part("dialog");
       form_.text(error_, Form::Tone::warning);
       if (form_.button("Close", "")) error_.clear();
@@ -97,10 +99,22 @@ private:
       form_.line("file name", file_);
       form_.lines_of(2);
       const auto look = file_.empty() ? Form::Look::grey : Form::Look::chosen;
-      if (form_.button("Open", "A file on the machine of the gloves.", look)) open({file_});
+      if (form_.button("Open", "A file on the machine of the gloves.", look))
+        follow_safely(Open{file_});
       if (form_.button("Cancel", "")) is_opening_ = false;
       form_.file("Choose a file of this device", "It is copied to the machine of the gloves.");
     }
+  }
+
+  void ask() {
+    form_.part("dialog");
+    form_.text("Discard the poses?");
+    form_.lines_of(2);
+    const bool discards = form_.button("Discard", "");
+    const bool stays = form_.button("Stay", "", Form::Look::chosen);
+    if (!discards && !stays) return;
+    const Wish wish = std::exchange(waiting_, {});
+    discards ? follow_seen(wish) : remove_sent(wish);
   }
 
   void show_start(PageFigures& figures) {
@@ -117,6 +131,13 @@ private:
     follow_seen(is_wish(of_hands) ? of_hands : of_ways);
   }
 
+  /// Asks before poses of a calibration are lost.
+  void follow_safely(const Wish& wish) {
+    if (!is_wish(wish) || !calibration_ || !calibration_->has_unkept_poses())
+      return follow_seen(wish);
+    remove_sent(std::exchange(waiting_, wish));
+  }
+
   void follow_seen(const Wish& wish) {
     if (is_wish(wish)) received_.clear(); // the user has seen the file, and left it
     follow(wish);
@@ -127,6 +148,7 @@ private:
 
   void leave_screen() override {
     if (calibration_) learns_for_ = calibration_->learns_for();
+    remove_sent(std::exchange(waiting_, {}));
     start_.reset();
     calibration_.reset();
     replay_.reset();
@@ -170,7 +192,7 @@ private:
     received_.clear();
     const auto stored = store_sent(file.name, file.bytes);
     if (!stored) return show_error(stored.error().message);
-    open({*stored, true});
+    follow_safely(Open{*stored, true});
   }
 
   std::shared_ptr<web::Server> server_;
@@ -181,6 +203,7 @@ private:
   std::unique_ptr<PageRun> view_;
   std::string error_;    ///< shown until it is closed
   std::string received_; ///< a file that was sent, removed if it cannot be read; empty: none
+  Wish waiting_;         ///< where the user goes once the poses of the calibration are discarded
   bool is_opening_ = false;
   std::string file_;    ///< the name that is typed
   bool has_run_ = true; ///< the server has another loop

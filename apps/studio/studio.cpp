@@ -64,6 +64,7 @@ private:
                                               : show_start());
     follow_safely(bar_.take_wish());
     follow_safely(timeline_.take_settled());
+    if (calibration_) follow(calibration_->take_settled());
     if (window_->take_close_request()) follow_safely(Quit{});
     if (is_complete()) ++shown_;
     if (options_.view.frames > 0 && shown_ >= options_.view.frames) is_over_ = true;
@@ -103,9 +104,9 @@ private:
     return Go{Screen::start};
   }
 
-  /// Asks before edits of the timeline are lost.
+  /// Asks before edits of the timeline, or poses of a calibration, are lost.
   void follow_safely(const Wish& wish) {
-    if (timeline_.lets(wish)) follow(wish);
+    if (timeline_.lets(wish) && (!calibration_ || calibration_->lets(wish))) follow(wish);
   }
 
   Wish left_for() const override { return view_ ? view_->left_for() : Wish{}; }
@@ -127,7 +128,7 @@ private:
 
   void enter_calibration(const NamedGlove& glove) override {
     screen_ = Screen::calibration;
-    calibration_ = std::make_unique<WindowCalibration>(*window_, glove);
+    calibration_ = std::make_unique<WindowCalibration>(*window_, bar_, glove);
   }
 
   std::shared_ptr<viewer::SceneWindow> window_;

@@ -6,8 +6,8 @@
 
 namespace nendo::studio {
 
-WindowCalibration::WindowCalibration(viewer::SceneWindow& window, NamedGlove glove)
-    : visit_(std::move(glove)) {
+WindowCalibration::WindowCalibration(viewer::SceneWindow& window, Bar& bar, NamedGlove glove)
+    : bar_(bar), visit_(std::move(glove)) {
   window.clear_model();
 }
 
@@ -23,6 +23,21 @@ Result<Wish> WindowCalibration::show(viewer::SceneWindow& window) {
     if (const auto started = screen_->start(); !started) return started.error();
   }
   return visit_.follow(screen_->show(window));
+}
+
+bool WindowCalibration::lets(const Wish& wish) {
+  if (!is_wish(wish) || !screen_ || !screen_->has_unkept_poses()) return true;
+  waiting_ = wish;
+  bar_.ask_to_discard("the poses");
+  return false;
+}
+
+Wish WindowCalibration::take_settled() {
+  if (!is_wish(waiting_)) return {};
+  const auto answer = bar_.take_answer();
+  if (!answer) return {};
+  const Wish wish = std::exchange(waiting_, {});
+  return *answer == Answer::discard ? wish : Wish{};
 }
 
 } // namespace nendo::studio

@@ -38,7 +38,10 @@ struct StudioSeat {
     const viewer::Control* const found = control(name);
     REQUIRE_MESSAGE(found != nullptr, name);
     REQUIRE_MESSAGE(found->is_possible, name);
-    const Eigen::Vector2d middle = ((found->min + found->max) / 2.0F).cast<double>();
+    press(*found);
+  }
+  void press(const viewer::Control& found) {
+    const Eigen::Vector2d middle = ((found.min + found.max) / 2.0F).cast<double>();
     for (const bool pressed : {false, true, false})
       point(middle, pressed);
     show();

@@ -396,6 +396,33 @@ TEST_SUITE("run_web") {
     CHECK(studio.program.wait().exit_code == 0);
   }
 
+  TEST_CASE("a studio on a page asks before the poses of a calibration are lost") {
+    const test::TemporaryFolder folder;
+    Studio studio(folder.path());
+    REQUIRE(studio.sees("With this model"));
+    studio.press("Calibration");
+    REQUIRE(studio.sees("your name"));
+    studio.press("Start"); // nothing is lost yet
+    REQUIRE(studio.sees("With this model"));
+    studio.press("Calibration");
+    REQUIRE(studio.sees("Choose who you are, and press Start."));
+    studio.press("your name", "anna");
+    studio.press("Start#1"); // the first is the tab
+    REQUIRE(studio.sees("First, show how far each joint goes."));
+    studio.press("Begin");
+    REQUIRE(studio.sees("Taken. Now take this pose."));
+    CHECK(studio.send("scan.obj", tetrahedron) == 200);
+    REQUIRE(studio.sees("Discard the poses?"));
+    CHECK(fs::exists(folder.path() / "scan.obj"));
+    studio.press("Stay");
+    REQUIRE(studio.sees_no("Discard the poses?"));
+    CHECK_FALSE(fs::exists(folder.path() / "scan.obj"));
+    studio.press("Start");
+    REQUIRE(studio.sees("Discard the poses?"));
+    studio.press("Discard");
+    REQUIRE(studio.sees("With this model"));
+  }
+
   TEST_CASE("a file that was sent during a run stays only if it is opened") {
     const test::TemporaryFolder folder;
     Studio studio(folder.path(), "sim:sculpt?seed=7");
