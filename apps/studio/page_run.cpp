@@ -12,6 +12,15 @@ namespace nendo::studio {
 using session::Asks;
 using session::RunStatus;
 
+namespace {
+
+/// The tab of the run itself.
+Screen screen_of(const RunStatus& status) {
+  return status.frame.function_count > 0 ? Screen::puppet : Screen::shaping;
+}
+
+} // namespace
+
 Wish describe_bar(web::PageForm& form, Screen now, const std::string& file) {
   Wish wish;
   form.part("bar");
@@ -39,9 +48,7 @@ void PageRun::update(const RunStatus& status, Asks& asks) {
   form_.begin(server_.next_input(web::FormKind::screen));
   const bool is_modified = status.saving->is_modified(status.frame);
   follow_recording(status);
-  const Screen now = replay_                           ? Screen::timeline
-                     : status.frame.function_count > 0 ? Screen::puppet
-                                                       : Screen::shaping;
+  const Screen now = replay_ ? Screen::timeline : screen_of(status);
   const Wish wish = describe_bar(form_, now, file_ + (is_modified ? " *" : ""));
   if (is_wish(wish)) go(wish, status, asks);
   if (const auto file = server_.take_file()) {
@@ -71,7 +78,7 @@ void PageRun::show_replay(const RunStatus& status, Asks& asks) {
   if (wish && !is_wish(*wish)) return;
   if (wish) return go(*wish, status, asks);
   server_.report(wish.error().message, true);
-  go_to(Screen::shaping, status, asks);
+  go_to(screen_of(status), status, asks);
 }
 
 /// The run continues beside a replay, and its hands release the model meanwhile.
@@ -97,7 +104,7 @@ void PageRun::report(const session::Report& message) {
 
 void PageRun::go(const Wish& wish, const RunStatus& status, Asks& asks) {
   if (const auto* const there = std::get_if<Go>(&wish))
-    if (there->screen == Screen::timeline || (there->screen == Screen::shaping && replay_))
+    if (there->screen == Screen::timeline || (there->screen == screen_of(status) && replay_))
       return go_to(there->screen, status, asks);
   remove_sent(std::exchange(waiting_, wish));
   if (!asks_to_save_ || !status.saving->is_modified(status.frame)) leave(asks);

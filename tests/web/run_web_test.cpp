@@ -118,6 +118,16 @@ struct Studio {
     }
     return false;
   }
+  /// Waits for that screen of the run that is shown; not of another one.
+  bool leads_to(const std::string& screen) {
+    while (const auto frame = browser.client->next()) {
+      const std::string text(reinterpret_cast<const char*>(frame->payload.data()),
+                             frame->payload.size());
+      if (frame->opcode == 8 || text.find("Save the shape of") != std::string::npos) return false;
+      if (text[0] == 12 && text.find("\"screen\":\"" + screen) != std::string::npos) return true;
+    }
+    return false;
+  }
   void press(const std::string& control, const std::string& value = {}) {
     browser.client->send_text("form\t" + control + "\t" + value);
   }
@@ -394,6 +404,31 @@ TEST_SUITE("run_web") {
     REQUIRE(studio.sees("With this model"));
     studio.program.signal(SIGTERM);
     CHECK(studio.program.wait().exit_code == 0);
+  }
+
+  TEST_CASE("the tab of a run leads back to it from the timeline, and another tab to another run") {
+    const test::TemporaryFolder folder;
+    Studio studio(folder.path());
+    REQUIRE(studio.sees("With this model"));
+    studio.press("Puppet");
+    studio.follows_run_of("face.obj");
+    studio.press("Timeline");
+    REQUIRE(studio.leads_to("timeline"));
+    studio.press("Puppet");
+    REQUIRE(studio.leads_to("shaping")); // the page's word for runs
+    studio.press("Timeline");
+    REQUIRE(studio.leads_to("timeline"));
+    studio.press("Shaping");
+    CHECK_FALSE(studio.leads_to("shaping"));
+    studio.press("Discard"); // if the puppet has moved the face
+    test::eventually([&] {
+      studio.browser.connect();
+      return studio.browser.follower->name == "moai.obj";
+    });
+    studio.press("Timeline");
+    REQUIRE(studio.leads_to("timeline"));
+    studio.press("Shaping");
+    REQUIRE(studio.leads_to("shaping"));
   }
 
   TEST_CASE("a studio on a page asks before the poses of a calibration are lost") {
