@@ -35,7 +35,8 @@ public:
   Result<void> begin(const LoopStart& start) override {
     placed_ = &start.placed;
     const deform::BlockLayout& layout = placed_->loop->changes().layout();
-    if (auto fine = check(layout); !fine) return fine;
+    if (auto fine = check_for_browsers(layout.vertex_count(), web::max_vertices); !fine)
+      return fine;
     streams_.begin(stream_for(layout));
     server_->set_settings(placed_->loop->changes().settings());
     while (server_->next_command()) { // those that came without a run
@@ -47,7 +48,8 @@ public:
   }
   void show(const flow::Frame& frame) noexcept override { streams_.of(frame).show(frame); }
   Result<void> prepare(const flow::ModelVersion& version) override {
-    if (auto fine = check(version.layout()); !fine) return fine;
+    if (auto fine = check_for_browsers(version.layout().vertex_count(), web::max_vertices); !fine)
+      return fine;
     streams_.prepare(stream_for(version.layout()));
     next_model_ = message_for(version.layout(), version.mesh);
     return {};
@@ -100,14 +102,6 @@ private:
                       web::status_message(status.frame, placed_->setup.options.rate_hz,
                                           status.model.mesh.vertex_count()));
   }
-  Result<void> check(const deform::BlockLayout& layout) const {
-    if (layout.vertex_count() <= web::max_vertices) return {};
-    return Error{Errc::bad_input, "--web: the model has " + std::to_string(layout.vertex_count()) +
-                                      " vertices, and a browser takes at "
-                                      "most " +
-                                      std::to_string(web::max_vertices) +
-                                      "; run it without --web, or reduce the model"};
-  }
   std::shared_ptr<web::FrameStream> stream_for(const deform::BlockLayout& layout) const {
     return std::make_shared<web::FrameStream>(layout, frame_capacity(*placed_));
   }
@@ -138,6 +132,14 @@ private:
 };
 
 } // namespace
+
+Result<void> check_for_browsers(std::size_t vertices, std::size_t most) {
+  if (vertices <= most) return {};
+  return Error{Errc::bad_input, "--web: the model has " + std::to_string(vertices) +
+                                    " vertices, and a browser takes at most " +
+                                    std::to_string(most) +
+                                    "; run it without --web, or reduce the model"};
+}
 
 Result<std::shared_ptr<web::Server>> open_web_server(const std::string& endpoint) {
   const auto where = parse_endpoint(endpoint, 0);

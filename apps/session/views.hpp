@@ -1,6 +1,7 @@
 #pragma once
 // The views of a run: a window on this machine, and a page in browsers.
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -44,6 +45,8 @@ std::unique_ptr<WindowView> live_view(const ViewOptions& options, const RunOptio
 /// Receives every frame in the tick, and observes the run on the main thread.
 class BrowserView : public Sink, public Observer {};
 
+/// Error: bad_input, in the words of --web, if a model has more than `most` vertices.
+Result<void> check_for_browsers(std::size_t vertices, std::size_t most);
 /// Opens the server for --web, and prints its address on standard error. Errors: those of
 /// parse_endpoint() and web::Server::open().
 Result<std::shared_ptr<web::Server>> open_web_server(const std::string& endpoint);

@@ -10,7 +10,7 @@
 #include "cli/cli.hpp"
 #include "cli/model_files.hpp"
 #include "commands/commands.hpp"
-#include "web/model_message.hpp"
+#include "session/views.hpp"
 
 namespace nendo::studio {
 namespace {
@@ -22,33 +22,46 @@ bool is_ready(const std::future<T>& future) {
   return future.valid() && future.wait_for(0s) == std::future_status::ready;
 }
 
+/// The result of a reading that was left, in place of a take that would only need memory.
+Error reading_left() {
+  return {Errc::failed, "the page shows something else"};
+}
+
 } // namespace
 
-Result<PageReplay::Opened> PageReplay::opened(const std::string& file) {
+Result<PageReplay::Opened> PageReplay::opened(const std::string& file,
+                                              const std::stop_token& stop) {
   auto take = takes::read_take(file);
+  if (stop.stop_requested()) return reading_left();
   if (!take) return take.error();
   if (!take->open)
     return Error{Errc::bad_input, printable(file) + ": no recording, and no timeline"};
   auto frames = take->open();
   if (!frames) return frames.error();
+  if (stop.stop_requested()) return reading_left();
   return Opened{*std::move(take), *std::move(frames)};
 }
 
-PageReplay::PageReplay(web::Server& server, std::string file)
-    : server_(server), file_(std::move(file)) {
+PageReplay::PageReplay(web::Server& server, LeftReadings& left, std::string file, std::size_t most)
+    : server_(server), left_readings_(left), file_(std::move(file)), most_(most) {
   if (!file_.empty())
-    reading_ = std::async(std::launch::async, [name = file_] { return opened(name); });
+    reading_ = std::async(std::launch::async,
+                          [name = file_, stop = stop_.get_token()] { return opened(name, stop); });
 }
 
 PageReplay::~PageReplay() {
+  stop_.request_stop();
+  left_readings_.add(std::move(reading_));
+  left_readings_.add(std::move(rewinding_));
   server_.end_beside();
 }
 
 /// Begins to show the frames' present version of the model.
-void PageReplay::present() {
+Result<void> PageReplay::present() {
   takes::FrameSource& frames = *opened_->frames;
   version_ = frames.frame().model;
   const deform::BlockLayout& layout = frames.layout(version_);
+  if (auto fine = session::check_for_browsers(layout.vertex_count(), most_); !fine) return fine;
   stream_ = std::make_shared<web::FrameStream>(layout, flow::FrameCapacity{});
   std::array<flow::HandInput, 2> hands;
   hands[0].side = hands[0].first.side = Side::left;
@@ -58,24 +71,31 @@ void PageReplay::present() {
                                             {cli::short_name(file_), frames.rate_hz(),
                                              frames.frame().units_per_metre}),
                          web::pictures_of(frames.model(version_)));
+  return {};
 }
 
 /// Each frame is a jump to its whole shape, because not all frames are shown.
-void PageReplay::show() {
+Result<void> PageReplay::show() {
   const flow::Frame& frame = opened_->frames->frame();
-  if (!stream_ || frame.model != version_) present();
+  if (!stream_ || frame.model != version_)
+    if (auto presented = present(); !presented) return presented;
   shown_.settings.mode = flow::Mode::type2; // whose base is the shape
   shown_.hands = frame.hands;
   shown_.units_per_metre = frame.units_per_metre;
   shown_.held = false;
   shown_.shape = frame.shape;
   ++shown_.shape_jumps;
+  return {};
 }
 
 void PageReplay::go_to(double time_s) {
   time_s_ = std::clamp(time_s, 0.0, opened_->take.duration_s);
   if (rewinding_.valid() || time_s_ >= opened_->frames->time_s()) return;
-  rewinding_ = std::async(std::launch::async, opened_->take.open);
+  rewinding_ =
+      std::async(std::launch::async, [open = opened_->take.open, stop = stop_.get_token()] {
+        auto frames = open();
+        return stop.stop_requested() ? reading_left() : std::move(frames);
+      });
 }
 
 Error PageReplay::no_frame() const {
@@ -88,7 +108,7 @@ Result<void> PageReplay::play_on() {
     if (!frames) return frames.error();
     opened_->frames = *std::move(frames);
     if (!opened_->frames->next()) return no_frame();
-    show();
+    if (const auto shown = show(); !shown) return shown;
   }
   const HostTime now = HostClock::now();
   const double elapsed_s = to_seconds(now - std::exchange(updated_, now));
@@ -99,7 +119,8 @@ Result<void> PageReplay::play_on() {
   const bool is_behind = frames.time_s() < time_s_;
   while (frames.time_s() < time_s_ && HostClock::now() - now < 20ms && frames.next()) {
   }
-  if (is_behind) show();
+  if (is_behind)
+    if (const auto shown = show(); !shown) return shown;
   ++shown_.ticks_run;
   stream_->show(shown_); // also while it pauses: a client may need the shape
   return {};
@@ -135,7 +156,7 @@ Result<Wish> PageReplay::update(web::PageForm& form) {
     opened_ = *std::move(opened);
     updated_ = HostClock::now();
     if (!opened_->frames->next()) return no_frame();
-    show();
+    if (const auto shown = show(); !shown) return shown.error();
   }
   if (!opened_) {
     form.text("Reading " + printable(file_));

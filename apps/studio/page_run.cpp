@@ -70,7 +70,7 @@ void PageRun::follow_recording(const RunStatus& status) {
   if (status.recorded == recorded_) return;
   recorded_ = status.recorded;
   session::keep_recent_file(recorded_);
-  if (replay_) replay_ = std::make_unique<PageReplay>(server_, recorded_);
+  if (replay_) replay_ = std::make_unique<PageReplay>(server_, left_readings_, recorded_);
 }
 
 void PageRun::show_replay(const RunStatus& status, Asks& asks) {
@@ -94,7 +94,8 @@ void PageRun::go_to(Screen screen, const RunStatus& status, Asks& asks) {
   if (status.facts.recorded) asks.emplace_back(flow::SetRecording{false});
   held_ = status.frame.held;
   if (held_) asks.emplace_back(flow::Request::release);
-  replay_ = std::make_unique<PageReplay>(server_, status.facts.recorded ? "" : recorded_);
+  replay_ =
+      std::make_unique<PageReplay>(server_, left_readings_, status.facts.recorded ? "" : recorded_);
 }
 
 /// A save that fails keeps the user here.

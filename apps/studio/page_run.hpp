@@ -26,8 +26,9 @@ class PageRun final : public session::Observer {
 public:
   /// `file` is the model's name. `asks_to_save`: leaving asks whether the shape is saved, and a run
   /// that is left does not write it.
-  PageRun(web::Server& server, std::string file, bool asks_to_save)
-      : server_(server), file_(std::move(file)), asks_to_save_(asks_to_save) {}
+  PageRun(web::Server& server, LeftReadings& left, std::string file, bool asks_to_save)
+      : server_(server), left_readings_(left), file_(std::move(file)), asks_to_save_(asks_to_save) {
+  }
   ~PageRun() override; ///< removes a file that was sent, if the user has not decided about it
   PageRun(const PageRun&) = delete;
   PageRun& operator=(const PageRun&) = delete;
@@ -49,6 +50,7 @@ private:
   void leave(session::Asks& asks);
 
   web::Server& server_;
+  LeftReadings& left_readings_;
   web::PageForm form_;
   std::string file_;
   bool asks_to_save_;

@@ -45,7 +45,8 @@ public:
   }
 
   session::Observer* observe(const session::RunOptions& run, bool asks_to_save) override {
-    view_ = std::make_unique<PageRun>(*server_, cli::short_name(run.mesh), asks_to_save);
+    view_ = std::make_unique<PageRun>(*server_, left_readings_, cli::short_name(run.mesh),
+                                      asks_to_save);
     has_run_ = true;
     received_.clear(); // it can be read
     return view_.get();
@@ -157,7 +158,7 @@ private:
 
   void enter_timeline(const std::string& file) override {
     leave_screen();
-    replay_ = std::make_unique<PageReplay>(*server_, file);
+    replay_ = std::make_unique<PageReplay>(*server_, left_readings_, file);
   }
 
   void enter_calibration(const NamedGlove& glove) override {
@@ -197,6 +198,7 @@ private:
 
   std::shared_ptr<web::Server> server_;
   web::PageForm form_;
+  LeftReadings left_readings_;
   std::unique_ptr<StartChoices> start_;
   std::unique_ptr<PageReplay> replay_;
   std::unique_ptr<PageCalibration> calibration_;
