@@ -137,7 +137,7 @@ void PageReplay::take_controls(web::PageForm& form) {
     plays_ = !plays_;
   }
   auto time_s = static_cast<float>(time_s_);
-  if (form.number("time", "The play head.", time_s, 0.0F, static_cast<float>(duration_s), "s"))
+  if (form.number("time", "The play head.", time_s, 0.0F, static_cast<float>(duration_s), "s", 1))
     go_to(static_cast<double>(time_s));
 }
 
