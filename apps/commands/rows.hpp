@@ -396,7 +396,7 @@ inline constexpr std::array run_rows{
         run_row("end run", keys("q"), "Ends the run, and writes the shape.", simple<flow::EndRun>),
         in_terminal | in_window),
     own_row("paint masks", keys("z"),
-            "Starts or ends painting masks, which protect vertices, with the mouse.",
+            "Starts or ends painting masks, which protect vertices, with the mouse; shift erases.",
             in_window | on_page),
     own_row("edit puppet", keys("Tab"), "Edits the puppet with the mouse, or plays it.", in_window),
     own_row("mirror puppet", keys("Y"),

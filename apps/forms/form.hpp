@@ -31,8 +31,8 @@ public:
 
   virtual ~Form() = default;
 
-  /// From now on, so many buttons, cards, boxes and choices share a line; 0: as many as fit, each
-  /// as wide as its text. At first it is 1.
+  /// From now on, so many buttons, cards, boxes and choices share a line; 0: as many buttons
+  /// and cards as fit, each as wide as its text. At first it is 1.
   virtual void lines_of(std::size_t count) = 0;
   virtual void separator() = 0;
   /// `help` is a tooltip, also below; empty: none.

@@ -1,5 +1,6 @@
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,8 +16,7 @@ namespace nendo::session {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-/// Between descriptions of the panel, if no user does something to it, and of the status bar, whose
-/// figures are to be read.
+/// Between messages of the panel, and of the status bar, whose figures are to be read.
 constexpr std::chrono::milliseconds panel_period(33), status_period(200);
 
 forms::DeviceLines device_lines(const gloves::DeviceStatuses& devices) {
@@ -83,19 +83,18 @@ public:
 
 private:
   void show_panel(const RunStatus& status) {
-    auto input = server_->next_input(web::FormKind::run);
-    const auto now = Clock::now();
-    if (server_->counters().clients == 0 || (!input && now < next_panel_)) return;
-    next_panel_ = now + panel_period;
-    const auto message = [&] {
-      return panel_.message(std::exchange(input, std::nullopt), status.situation(),
-                            device_lines(status.devices), status.puppet.get());
+    const auto message = [&](std::optional<web::FormInput> input) {
+      return panel_.message(std::move(input), status.situation(), device_lines(status.devices),
+                            status.puppet.get());
     };
-    for (; input; input = server_->next_input(web::FormKind::run)) {
-      message();
+    while (auto input = server_->next_input(web::FormKind::run)) {
+      message(*std::move(input));
       if (const auto change = panel_.pending.ask()) panel_.commands.push_back(*change);
     }
-    server_->set_form(web::FormKind::run, message());
+    const auto now = Clock::now();
+    if (server_->counters().clients == 0 || now < next_panel_) return;
+    next_panel_ = now + panel_period;
+    server_->set_form(web::FormKind::run, message({}));
     if (now < next_status_) return;
     next_status_ = now + status_period;
     server_->set_form(web::FormKind::status,

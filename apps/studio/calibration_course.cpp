@@ -115,10 +115,19 @@ void CalibrationCourse::begin_guide() {
       return;
     }
   file_ = *std::move(file);
+  kept_poses_ = guide.readings();
   guide_ = std::move(guide);
   guided_.emplace(glove_.info(), file_->fit_options(), *guide_);
   guiding_since_ = HostClock::now();
   stage_ = Stage::guiding;
+}
+
+bool CalibrationCourse::has_unkept_poses() const {
+  if (!guide_ || !guide_->has_any() || outcome_) return false;
+  const auto is_same = [](const hand::PoseReading& one, const hand::PoseReading& other) {
+    return one.pose == other.pose && one.held.mean_counts == other.held.mean_counts;
+  };
+  return !std::ranges::equal(guide_->readings(), kept_poses_, is_same);
 }
 
 void CalibrationCourse::take_samples() {

@@ -84,9 +84,9 @@ public:
     return std::exchange(outcome_, std::nullopt);
   }
 
-  /// Returns whether poses are taken that nothing has kept yet, so that they are lost if this is
+  /// Returns whether there are poses that nothing has kept yet, so that they are lost if this is
   /// destroyed.
-  bool has_unkept_poses() const noexcept { return guide_ && guide_->has_any() && !outcome_; }
+  bool has_unkept_poses() const;
   Side side() const noexcept { return side_; }
   const std::optional<calibrate::FinishedCalibration>& finished() const noexcept {
     return finished_;
@@ -136,8 +136,9 @@ private:
   // Before:
   float length_mm_;
   std::vector<std::string> recent_names_;
-  std::string touch_up_refusal_; ///< why there is nothing to touch up; empty: there is
-  bool has_kept_ = false;        ///< an earlier session kept poses
+  std::string touch_up_refusal_;              ///< why there is nothing to touch up; empty: there is
+  bool has_kept_ = false;                     ///< an earlier session kept poses
+  std::vector<hand::PoseReading> kept_poses_; ///< those that the guide began with
   bool continues_ = true;
 
   std::optional<calibrate::WearerFile> file_;

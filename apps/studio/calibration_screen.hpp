@@ -24,7 +24,7 @@ public:
   /// Ends at the next picture, as CalibrationCourse::leave().
   void leave() { course_.leave(); }
   /// As CalibrationCourse.
-  bool has_unkept_poses() const noexcept { return course_.has_unkept_poses(); }
+  bool has_unkept_poses() const { return course_.has_unkept_poses(); }
 
 private:
   void look_by(viewer::SceneWindow& window);

@@ -20,7 +20,7 @@ public:
   /// Describes the controls and the hands. Returns Go to the start when it is over. Errors: those
   /// of open_glove() and of the course.
   Result<Wish> update(web::PageForm& form, PageFigures& figures);
-  bool has_unkept_poses() const noexcept {
+  bool has_unkept_poses() const {
     return course_ && course_->has_unkept_poses();
   } ///< as CalibrationCourse
   const std::string& learns_for() const noexcept {

@@ -43,10 +43,12 @@ Result<PageReplay::Opened> PageReplay::opened(const std::string& file,
 }
 
 PageReplay::PageReplay(web::Server& server, LeftReadings& left, std::string file, std::size_t most)
-    : server_(server), left_readings_(left), file_(std::move(file)), most_(most) {
-  if (!file_.empty())
-    reading_ = std::async(std::launch::async,
-                          [name = file_, stop = stop_.get_token()] { return opened(name, stop); });
+    : server_(server), left_readings_(left), file_(std::move(file)), most_(most) {}
+
+void PageReplay::begin_reading() {
+  if (opened_ || reading_.valid() || !left_readings_.have_ended()) return;
+  reading_ = std::async(std::launch::async,
+                        [name = file_, stop = stop_.get_token()] { return opened(name, stop); });
 }
 
 PageReplay::~PageReplay() {
@@ -137,7 +139,7 @@ void PageReplay::take_controls(web::PageForm& form) {
     plays_ = !plays_;
   }
   auto time_s = static_cast<float>(time_s_);
-  if (form.number("time", "The play head.", time_s, 0.0F, static_cast<float>(duration_s), "s", 1))
+  if (form.number("time", "The play head.", time_s, 0.0F, static_cast<float>(duration_s), "s", 2))
     go_to(static_cast<double>(time_s));
 }
 
@@ -150,6 +152,7 @@ Result<Wish> PageReplay::update(web::PageForm& form) {
     if (form.button("Open a recording or a timeline...", "")) return Wish{Open{}};
     return Wish{};
   }
+  begin_reading();
   if (is_ready(reading_)) {
     auto opened = reading_.get();
     if (!opened) return opened.error();

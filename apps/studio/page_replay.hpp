@@ -31,11 +31,17 @@ class LeftReadings {
 public:
   template <class T>
   void add(std::future<T> reading) {
-    std::erase_if(readings_, [](const auto& has_ended) { return has_ended(); });
     if (!reading.valid()) return;
     readings_.push_back([left = reading.share()] {
       return left.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     });
+  }
+
+  /// Returns whether all but one have ended, so that another file may be read. Else someone who
+  /// opens and leaves replays quickly would fill the memory.
+  bool have_ended() {
+    std::erase_if(readings_, [](const auto& has_ended) { return has_ended(); });
+    return readings_.size() <= 1;
   }
 
 private:
@@ -44,9 +50,9 @@ private:
 
 class PageReplay {
 public:
-  /// Begins to read the file; empty: the page says how to get one. `left`, which must outlive this,
-  /// gets what is still being read at the end. Of a model with more than `most` vertices nothing is
-  /// shown.
+  /// `file` is read once `left` have ended; empty: the page says how to get one. `left`, which must
+  /// outlive this, gets what is still being read at the end. Of a model with more than `most`
+  /// vertices nothing is shown.
   PageReplay(web::Server& server, LeftReadings& left, std::string file,
              std::size_t most = web::max_vertices);
   /// The page shows what it showed before. Does not wait for the file.
@@ -64,6 +70,7 @@ private:
     std::unique_ptr<takes::FrameSource> frames;
   };
   static Result<Opened> opened(const std::string& file, const std::stop_token& stop);
+  void begin_reading();
   void take_controls(web::PageForm& form);
   void go_to(double time_s);
   Error no_frame() const;

@@ -47,7 +47,9 @@ bool LiveWindow::Panel::has_history() const {
 
 void LiveWindow::Panel::describe_look(forms::Form& form) {
   auto material = static_cast<std::size_t>(window.material());
-  if (form.choice("material", commands::named("next material")->help, gl::material_names, material))
+  const commands::Row& row = *commands::named("next material");
+  const std::string help = std::string(row.help) + " (" + commands::keys_of(row) + ")";
+  if (form.choice("material", help, gl::material_names, material))
     window.material() = static_cast<gl::Material>(material);
 }
 

@@ -158,10 +158,10 @@ bool WindowForm::command(const commands::Row& row, const commands::State& now) {
 
 bool WindowForm::box(std::string_view name, const commands::Row& row, const commands::State& now,
                      bool is_on) {
-  const std::size_t column = at_++ % in_line_;
+  const std::size_t in_line = std::max<std::size_t>(1, in_line_), column = at_++ % in_line;
   if (column == 0) {
     left_ = ImGui::GetCursorPosX();
-    width_ = ImGui::GetContentRegionAvail().x / static_cast<float>(in_line_);
+    width_ = ImGui::GetContentRegionAvail().x / static_cast<float>(in_line);
   } else {
     ImGui::SameLine(left_ + static_cast<float>(column) * width_);
   }
@@ -216,7 +216,7 @@ std::optional<std::size_t> WindowForm::list(std::string_view name, std::string_v
                                             std::span<const Row> rows, std::size_t present) {
   std::optional<std::size_t> clicked;
   const std::string id(name);
-  const Shown now{rows.size(), present};
+  const Shown now{rows.size(), present, rows.empty() ? "" : rows.back().text};
   const bool is_new = std::exchange(lists_[id], now) != now;
   ImGui::BeginChild(id.c_str(), ImVec2(0.0F, em(7.0F)), true);
   for (std::size_t at = 0; at < rows.size(); ++at) {

@@ -44,6 +44,7 @@ private:
   /// What a list showed in the last picture.
   struct Shown {
     std::size_t rows = 0, present = 0;
+    std::string last; ///< the last row
     friend bool operator==(const Shown&, const Shown&) = default;
   };
   float next_width(std::string_view name);

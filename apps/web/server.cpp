@@ -213,6 +213,7 @@ void Server::Work::present(Presented next, std::vector<std::byte> model, bool is
       // Another run counts its puppets from the beginning, and has its own controls.
       for (const std::size_t fact : {puppet_fact, run_form_fact, status_fact})
         inbox.facts[fact] = nullptr;
+      inbox.inputs[static_cast<std::size_t>(FormKind::run)].clear();
       inbox.pictures.reset(); // of the loop before
     }
   }

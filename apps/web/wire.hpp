@@ -128,10 +128,7 @@ struct ClayMessage {
 };
 static_assert(sizeof(ClayMessage) == 24);
 
-inline constexpr std::size_t text_head_bytes = 4; ///< the type, and three zeros
-/// The history message.
-inline constexpr std::size_t history_head_bytes = 8;
-inline constexpr std::size_t history_step_bytes = 8;
+inline constexpr std::size_t text_head_bytes = 4;   ///< the type, a kind, and two zeros
 inline constexpr std::size_t puppet_head_bytes = 8; ///< the puppet message
 inline constexpr std::size_t mask_bytes = 16;
 

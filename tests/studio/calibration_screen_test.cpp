@@ -258,10 +258,12 @@ TEST_SUITE("calibration_screen" * doctest::skip(!test::restraint_is_counted)) {
     person.look(2);
     CHECK(Visitor::find("continue the poses of last time") != nullptr);
     person.press("Start");
+    CHECK_FALSE(person.screen->has_unkept_poses()); // those of last time stay kept
     person.move_freely(1.0);
     person.press("Begin");
     person.take(PoseId::spread);
     CHECK(Visitor::find("thumb out")->is_possible);
+    CHECK(person.screen->has_unkept_poses());
     person.press("Finish now");
     REQUIRE(person.waits_for("Discard"));
     person.press("Take poses again");

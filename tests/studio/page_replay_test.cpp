@@ -1,6 +1,9 @@
 // A recording or a timeline on the page of the studio.
 
+#include <set>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -75,7 +78,7 @@ TEST_SUITE("page_replay") {
                                       "--web, or reduce the model");
   }
 
-  TEST_CASE("a replay that is left does not wait for its file, which is read no further") {
+  TEST_CASE("a replay that is left does not wait for its file") {
     Page page;
     const auto slow = page.folder.path() / "take.nendo";
     REQUIRE(::mkfifo(slow.c_str(), 0600) == 0);
@@ -90,6 +93,31 @@ TEST_SUITE("page_replay") {
       CHECK(replay.update(page.form));
     }
     CHECK(HostClock::now() - begun < std::chrono::seconds(1));
+  }
+
+  TEST_CASE("of many files whose replays are left, two are read at once") {
+    Page page;
+    std::vector<std::string> files;
+    for (int number = 0; number < 5; ++number) {
+      files.push_back(page.folder.path() / ("take" + std::to_string(number) + ".nendo"));
+      REQUIRE(::mkfifo(files.back().c_str(), 0600) == 0);
+      PageReplay replay(*page.server, page.left, files.back());
+      page.form.begin({});
+      CHECK(replay.update(page.form));
+    }
+    std::set<std::string> read;
+    const auto look = [&] { // and end the reading
+      for (const std::string& file : files) {
+        const int writer = ::open(file.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+        if (writer < 0) continue; // no thread reads it
+        ::close(writer);
+        read.insert(file);
+      }
+      return read.size();
+    };
+    CHECK(test::eventually([&] { return look() == 2; }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    CHECK(look() == 2);
   }
 }
 

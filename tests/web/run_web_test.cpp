@@ -421,10 +421,10 @@ TEST_SUITE("run_web") {
     studio.press("Shaping");
     CHECK_FALSE(studio.leads_to("shaping"));
     studio.press("Discard"); // if the puppet has moved the face
-    test::eventually([&] {
+    REQUIRE(test::eventually([&] {
       studio.browser.connect();
       return studio.browser.follower->name == "moai.obj";
-    });
+    }));
     studio.press("Timeline");
     REQUIRE(studio.leads_to("timeline"));
     studio.press("Shaping");

@@ -97,6 +97,11 @@ TEST_SUITE("server") {
     CHECK(of_run->value == "12");
     CHECK_FALSE(server->next_input(FormKind::run));
     CHECK_FALSE(server->next_input(FormKind::status));
+    client.send_text("panel\tradius\t13");
+    client.send_text("form\tPull\t");
+    REQUIRE(eventually([&] { return server->next_input(FormKind::screen).has_value(); }));
+    server->present_nothing();
+    CHECK_FALSE(server->next_input(FormKind::run)); // it was for the run before
   }
 
   TEST_CASE("a wrong origin, host or token is refused, and there is nothing before a loop begins") {

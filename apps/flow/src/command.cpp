@@ -88,14 +88,4 @@ void PendingSettings::scale_radii(double factor) noexcept {
     radius_m = setting::radius.handy.nearest(factor * radius_m);
 }
 
-bool PendingSettings::has_one_radius() const noexcept {
-  return std::all_of(now.radius_m.begin(), now.radius_m.end(),
-                     [this](double radius_m) { return radius_m == now.radius_m[0]; });
-}
-
-bool PendingSettings::has_one_brush() const noexcept {
-  return std::all_of(now.brushes.begin(), now.brushes.end(),
-                     [this](deform::Brush brush) { return brush == now.brushes[0]; });
-}
-
 } // namespace nendo::flow

@@ -153,6 +153,7 @@ function takeUpdate(update, { rate }) {
   holds.follow(update)
   CHARTS.late.add(update.maxLate / 1000)
   CHARTS.uneven.add(Math.abs(update.sinceLast / 1000 - 1000 / rate))
+  setText(element('unseen'), update.unseen > 0 ? `${update.unseen} frames not shown` : '')
   if (!scene || scene.shape.number === null) return
   for (const step of update.steps) {
     scene.shape.takeStep(step)

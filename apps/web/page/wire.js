@@ -180,11 +180,11 @@ function readUpdate(buffer, model) {
   const from = new Reader(buffer, 1), state = from.u8(), bits = from.u8(), has = (flags, bit) => (flags & bit) !== 0
   from.at = 4
   const steps = from.u32(), [number, , ticks] = from.some(4, () => from.u64()), [restChanges, jumps] = from.some(2, () => from.u32())
-  const [, maxLate, sinceLast] = from.f32s(3)
+  const [, maxLate, sinceLast] = from.f32s(3), [lost, skipped] = from.some(2, () => from.u32())
   from.at = 72
   return {
     letGo: [has(state, 16), has(state, 32)], symmetric: has(state, 64), isPuppet: has(state, 128), held: has(state, 1),
-    number, ticks, restChanges, jumps, maxLate, sinceLast, bytes: buffer.byteLength,
+    number, ticks, restChanges, jumps, maxLate, sinceLast, unseen: lost + skipped, bytes: buffer.byteLength,
     hands: [0, 1].map(slot => has(bits, 1 << slot) ? {
       ...readHand(from, model.bones[slot][has(bits, 16 << slot) ? 1 : 0]), silent: has(bits, 4 << slot),
     } : null),

@@ -270,8 +270,6 @@ public:
   /// Scale all radii by 1.1 or 1/1.1, within the range.
   void enlarge_radii() noexcept { scale_radii(1.1); }
   void reduce_radii() noexcept { scale_radii(1.0 / 1.1); }
-  bool has_one_radius() const noexcept; ///< all fingers have the same radius
-  bool has_one_brush() const noexcept;
   /// Change the brushes' strength by +-0.1; below 0 their effect is reversed.
   void strengthen() noexcept { add_strength(0.1); }
   void weaken() noexcept { add_strength(-0.1); }
