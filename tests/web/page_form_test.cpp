@@ -57,12 +57,13 @@ TEST_SUITE("page_form") {
     CHECK(learns);
     give("learn", "yes");
     CHECK_FALSE(learns);
-    for (const auto& [value, length] : {std::pair{"200.5", 200.5F},
-                                        {"1e9", 230.0F},
-                                        {"-1", 140.0F},
-                                        {"nan", 140.0F},
-                                        {"", 140.0F},
-                                        {"1x", 140.0F}}) {
+    for (const auto& [text, length] : {std::pair{"200.5", 200.5F},
+                                       {"1e9", 230.0F},
+                                       {"-1", 140.0F},
+                                       {"nan", 140.0F},
+                                       {"", 140.0F},
+                                       {"1x", 140.0F}}) {
+      const std::string value(text); // Clang 14 captures no structured binding
       CAPTURE(value);
       give("length", value);
       CHECK(length_mm == length);

@@ -81,12 +81,13 @@ TEST_SUITE("page_panel") {
 
   TEST_CASE("an input changes its setting, and no input makes one that is not allowed") {
     Run run;
-    for (const auto& [value, radius_m] : {std::pair{"12.5", 0.125},
-                                          {"1e9", 0.4},
-                                          {"-3", 0.01},
-                                          {"nan", 0.01},
-                                          {"", 0.01},
-                                          {"8", 0.08}}) {
+    for (const auto& [text, radius_m] : {std::pair{"12.5", 0.125},
+                                         {"1e9", 0.4},
+                                         {"-3", 0.01},
+                                         {"nan", 0.01},
+                                         {"", 0.01},
+                                         {"8", 0.08}}) {
+      const std::string value(text); // Clang 14 captures no structured binding
       CAPTURE(value);
       for (const double one : run.after("radius", value).radius_m)
         CHECK(one == doctest::Approx(radius_m));
