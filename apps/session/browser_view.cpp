@@ -19,14 +19,6 @@ using Clock = std::chrono::steady_clock;
 /// Between messages of the panel, and of the status bar, whose figures are to be read.
 constexpr std::chrono::milliseconds panel_period(33), status_period(200);
 
-forms::DeviceLines device_lines(const gloves::DeviceStatuses& devices) {
-  forms::DeviceLines lines;
-  for (std::size_t slot = 0; slot < devices.size(); ++slot)
-    for (const auto& [title, state] : devices[slot])
-      lines[slot].insert(lines[slot].end(), {title, state});
-  return lines;
-}
-
 class WebView final : public BrowserView {
 public:
   WebView(std::shared_ptr<web::Server> server, std::string model_name) noexcept
@@ -131,6 +123,14 @@ private:
 };
 
 } // namespace
+
+forms::DeviceLines device_lines(const gloves::DeviceStatuses& devices) {
+  forms::DeviceLines lines;
+  for (std::size_t slot = 0; slot < devices.size(); ++slot)
+    for (const auto& [title, state] : devices[slot])
+      lines[slot].insert(lines[slot].end(), {title, state});
+  return lines;
+}
 
 Result<void> check_for_browsers(std::size_t vertices, std::size_t most) {
   if (vertices <= most) return {};

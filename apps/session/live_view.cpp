@@ -41,11 +41,7 @@ public:
   }
 
   void update(const RunStatus& status, Asks& asks) override {
-    for (std::size_t slot = 0; slot < status.devices.size(); ++slot) {
-      gauges_.devices[slot].clear();
-      for (const auto& [title, state] : status.devices[slot])
-        gauges_.devices[slot].insert(gauges_.devices[slot].end(), {title, state});
-    }
+    gauges_.devices = device_lines(status.devices);
     gauges_.facts = status.facts;
     gauges_.parts = status.model.parts;
     gauges_.vertices = status.model.mesh.vertex_count();

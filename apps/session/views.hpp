@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "forms/run_panel.hpp"
 #include "session/observer.hpp"
 #include "session/sink.hpp"
 
@@ -26,6 +27,9 @@ struct ViewOptions {
   std::string screenshot;     ///< the file for the last picture, .png; empty: none
   std::uint32_t frames = 0;   ///< pictures after which the run ends; 0: no limit
 };
+
+/// Returns what panels show of the devices.
+forms::DeviceLines device_lines(const gloves::DeviceStatuses& devices);
 
 /// A run in a window.
 class WindowView : public Observer {
