@@ -94,7 +94,7 @@ void RunPanel::describe_masks(Form& form, const commands::Situation& now) {
 void RunPanel::describe_view(Form& form, const commands::Situation& now) {
   constexpr std::string_view show = "show ";
   form.lines_of(1);
-  describe_look(form);
+  describe_look(form, now);
   form.lines_of(2);
   for (const commands::Row& row : commands::table())
     if ((row.places & place_) != 0 && row.name.starts_with(show))
@@ -144,7 +144,7 @@ void RunPanel::describe(Form& form, const commands::Situation& now, const Device
   SettingForm::describe_modes(form, pending.now);
   buttons_of(form, commands::Buttons::hands, now);
   if (form.section("Tool", "The settings that have an effect in this mode.", true)) {
-    settings.describe(form, pending.now);
+    settings_.describe(form, pending.now);
     describe_masks(form, now);
   }
   if (has_history()) describe_history(form, frame);

@@ -25,11 +25,10 @@ struct Strip : std::array<float, 240> {
 class RunPanel {
 public:
   /// `place`: commands::in_window or commands::on_page.
-  explicit RunPanel(std::uint8_t place) noexcept : settings(place), place_(place) {}
+  explicit RunPanel(std::uint8_t place) noexcept : settings_(place), place_(place) {}
   virtual ~RunPanel() = default;
 
   flow::PendingSettings pending;
-  SettingForm settings;
   std::vector<flow::Command> commands; ///< asked for and not taken yet, in their order
   std::string note;                    ///< why the last command was refused; empty: it was not
   Strip late_ms{}, uneven_ms{}, pictures_ms{}; ///< pages have their own
@@ -61,12 +60,15 @@ private:
   virtual bool edits_puppet() const { return false; }
   virtual void describe_puppet(Form& form, const flow::Frame& frame) = 0;
   /// Adds controls to those of the view, and of masks.
-  virtual void describe_look(Form& form) { static_cast<void>(form); }
+  virtual void describe_look(Form& form, const commands::Situation& now) {
+    static_cast<void>(form), static_cast<void>(now);
+  }
   virtual void describe_painting(Form& form) { static_cast<void>(form); }
   /// Returns whether a command is on that the run does not execute, and executes one.
   virtual bool is_on(const commands::Row& row) const { return static_cast<void>(row), false; }
   virtual void execute(const commands::Row& row) { static_cast<void>(row); }
 
+  SettingForm settings_;
   std::uint8_t place_;
 };
 

@@ -75,18 +75,19 @@ public:
 
 private:
   void show_panel(const RunStatus& status) {
-    const auto message = [&](std::optional<web::FormInput> input) {
-      return panel_.message(std::move(input), status.situation(), device_lines(status.devices),
-                            status.puppet.get());
+    const auto follow = [&](std::optional<web::FormInput> input) {
+      panel_.follow(std::move(input), status.situation(), device_lines(status.devices),
+                    status.puppet.get());
     };
     while (auto input = server_->next_input(web::FormKind::run)) {
-      message(*std::move(input));
+      follow(*std::move(input));
       if (const auto change = panel_.pending.ask()) panel_.commands.push_back(*change);
     }
     const auto now = Clock::now();
     if (server_->counters().clients == 0 || now < next_panel_) return;
     next_panel_ = now + panel_period;
-    server_->set_form(web::FormKind::run, message({}));
+    follow({});
+    server_->set_form(web::FormKind::run, panel_.message());
     if (now < next_status_) return;
     next_status_ = now + status_period;
     server_->set_form(web::FormKind::status,

@@ -45,10 +45,9 @@ bool LiveWindow::Panel::has_history() const {
   return !is_wide();
 }
 
-void LiveWindow::Panel::describe_look(forms::Form& form) {
+void LiveWindow::Panel::describe_look(forms::Form& form, const commands::Situation& now) {
   auto material = static_cast<std::size_t>(window.material());
-  const commands::Row& row = *commands::named("next material");
-  const std::string help = std::string(row.help) + " (" + commands::keys_of(row) + ")";
+  const std::string help = commands::help_of(*commands::named("next material"), now);
   if (form.choice("material", help, gl::material_names, material))
     window.material() = static_cast<gl::Material>(material);
 }

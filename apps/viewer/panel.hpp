@@ -48,7 +48,7 @@ private:
   bool has_history() const override;
   bool edits_puppet() const override { return editor.edits_puppet(); }
   void describe_puppet(forms::Form& form, const flow::Frame& frame) override;
-  void describe_look(forms::Form& form) override;
+  void describe_look(forms::Form& form, const commands::Situation& now) override;
   void describe_painting(forms::Form& form) override;
   bool is_on(const commands::Row& row) const override;
   void execute(const commands::Row& row) override;

@@ -6,13 +6,12 @@
 
 namespace nendo::web {
 
-std::string PagePanel::message(std::optional<FormInput> input, const commands::Situation& now,
-                               const forms::DeviceLines& devices, const puppet::Rig* rig) {
+void PagePanel::follow(std::optional<FormInput> input, const commands::Situation& now,
+                       const forms::DeviceLines& devices, const puppet::Rig* rig) {
   rig_ = rig;
   form_.begin(std::move(input));
   form_.part("run");
   describe(form_, now, devices);
-  return form_.message();
 }
 
 /// What each function listens to; puppets are edited in the window.

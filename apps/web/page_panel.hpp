@@ -15,10 +15,12 @@ class PagePanel final : public forms::RunPanel {
 public:
   PagePanel() noexcept : RunPanel(commands::on_page) {}
 
-  /// Returns the message (PROTOCOL.md, message 12), after the input, if any. `rig`: the run's
-  /// puppet; null: none.
-  std::string message(std::optional<FormInput> input, const commands::Situation& now,
-                      const forms::DeviceLines& devices, const puppet::Rig* rig);
+  /// Describes the controls again, and does to one of them what the input says, if there is one.
+  /// `rig`: the run's puppet; null: none.
+  void follow(std::optional<FormInput> input, const commands::Situation& now,
+              const forms::DeviceLines& devices, const puppet::Rig* rig);
+  /// Returns the message with the controls as they were described last.
+  std::string message() const { return form_.message(); }
 
 private:
   void describe_puppet(forms::Form& form, const flow::Frame& frame) override;

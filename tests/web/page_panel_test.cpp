@@ -30,8 +30,8 @@ struct Run {
   }
   /// Returns the controls by their ids, after an input.
   std::map<std::string, Json> controls(std::optional<FormInput> input = {}) {
-    const Json message =
-        Json::parse(panel.message(std::move(input), {frame, facts}, devices, nullptr));
+    panel.follow(std::move(input), {frame, facts}, devices, nullptr);
+    const Json message = Json::parse(panel.message());
     std::map<std::string, Json> all;
     for (const Json& one : message.at("parts").at(0).at("controls"))
       if (one.contains("id")) CHECK(all.emplace(one["id"], one).second);
