@@ -97,10 +97,10 @@ private:
 Result<std::shared_ptr<SceneWindow>> open_window(const ViewOptions& options) {
   WindowLook look;
   look.theme = theme_named(options.theme);
-  auto window = SceneWindow::open(
-      "Nendo", look,
-      "on a box without a screen `nendo run --web 8080` shows the run in a browser, and `nendo "
-      "picture` and `nendo run --picture` draw files");
+  constexpr const char* remedy =
+      "on a box without a screen `nendo studio --web 8080` and `nendo run --web 8080` show a page "
+      "in a browser, and `nendo picture` and `nendo run --picture` draw files";
+  auto window = SceneWindow::open("Nendo", look, remedy);
   if (!window) return window.error();
   return std::shared_ptr<SceneWindow>(*std::move(window));
 }
@@ -118,9 +118,9 @@ namespace nendo::session {
 
 Result<std::shared_ptr<viewer::SceneWindow>> open_window(const ViewOptions&) {
   return Error{Errc::failed, "this nendo was built without a window; install libglfw3-dev, "
-                             "libimgui-dev and libgl-dev and build it again, use a "
-                             "browser with `nendo run --web 8080`, or draw files with "
-                             "`nendo picture`"};
+                             "libimgui-dev and libgl-dev and build it again, use a browser with "
+                             "`nendo studio --web 8080` or `nendo run --web 8080`, or draw files "
+                             "with `nendo picture`"};
 }
 
 std::unique_ptr<WindowView> live_view(const ViewOptions&, const RunOptions&,
