@@ -54,11 +54,21 @@ class MaskPainter {
 
 const restOf = ({ origin, unit, places }, at) => [0, 1, 2].map(axis => origin[axis] + unit * places[3 * at + axis])
 
-// Of each vertex, how much it is held, 0 to 255: all of it within half of a mask's radius, and then less.
+// Of each vertex, how much it is held, 0 to 255. The shares of the masks remain with the model, so that a mask that is added
+// takes one pass over the vertices.
 function heldBy({ masks, isInverted }, model) {
-  return Uint8Array.from({ length: model.vertices }, (_, vertex) => {
-    const place = restOf(model, vertex), shareOf = ({ at, radius }) => clamp(2 - 2 * size(minus(place, at)) / radius, 0, 1)
-    const share = masks.reduce((most, mask) => Math.max(most, shareOf(mask)), 0)
-    return Math.round(255 * (isInverted ? 1 - share : share))
-  })
+  const isSame = (mask, other) => other && mask.radius === other.radius && mask.at.every((part, axis) => part === other.at[axis])
+  if (!model.held || !model.held.masks.every((mask, at) => isSame(mask, masks[at])))
+    model.held = { masks: [], shares: new Float32Array(model.vertices) }
+  for (const mask of masks.slice(model.held.masks.length)) hold(model, mask, model.held.shares)
+  model.held.masks = masks
+  return Uint8Array.from(model.held.shares, share => Math.round(255 * (isInverted ? 1 - share : share)))
+}
+
+// A mask holds a vertex within half of its radius wholly, and then less.
+function hold({ origin, unit, places, vertices }, { at: [x, y, z], radius }, shares) {
+  for (let vertex = 0, at = 0; vertex < vertices; ++vertex) {
+    const distance = Math.hypot(origin[0] + unit * places[at++] - x, origin[1] + unit * places[at++] - y, origin[2] + unit * places[at++] - z)
+    shares[vertex] = Math.max(shares[vertex], clamp(2 - 2 * distance / radius, 0, 1))
+  }
 }
