@@ -14,7 +14,31 @@ import urllib.request
 PATIENCE_S = 30
 UPDATE = 2  # the message
 CTRL, SHIFT = 2, 8
-KEYS = {"Escape": 27, "Enter": 13, "ArrowDown": 40, "ArrowUp": 38, "F3": 114, "Tab": 9}
+KEYS = {"Escape": 27, "Enter": 13, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "End": 35, "Home": 36, "Delete": 46, "F3": 114, "Tab": 9}
+
+
+# What tools ask the page for: `nendo` in its window, after the page's own script. It counts what has come.
+PROBE = """addEventListener('DOMContentLoaded', () => {
+    if (typeof panel === 'undefined') return
+    const counts = { updates: 0, shapes: 0, weights: 0, bakes: 0, draws: 0 }
+    const count = (owner, name, add) => {
+        const own = owner[name]
+        owner[name] = function (...given) { add(...given); return own.apply(this, given) }
+    }
+    count(window, 'takeUpdate', () => { counts.updates += 1 })
+    count(window, 'takeShape', () => { counts.shapes += 1 })
+    count(Shape.prototype, 'takeWeights', () => { counts.weights += 1 })
+    count(Shape.prototype, 'takeStep', step => { counts[step.bakes ? 'bakes' : 'draws'] += step.count })
+    window.nendo = {
+        ask, counts,
+        control: id => form.all().map(({ wanted }) => wanted).find(wanted => wanted.id === id), // as the server describes it
+        vertices: () => Array.from(scene.shape.vertices()),
+        state: () => latest && { number: Number(latest.number), held: latest.held, restChanges: latest.restChanges, jumps: latest.jumps,
+            ticks: latest.ticks, loop: panel.model.loop, ...run,
+            wrists: latest.hands.map(hand => hand && { ...hand.joints[1], turn: hand.forearm, pixel: scene && scene.pixelOf(hand.joints[1].place) }),
+            open: isOpen(), shape: Boolean(scene) && scene.shape.number !== null },
+    }
+})"""
 
 
 def way(start, end, steps=10):
@@ -49,6 +73,7 @@ class Browser:
         self.session = self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Runtime", "Log", "Page", "Network"):
             self.ask(domain + ".enable")
+        self.ask("Page.addScriptToEvaluateOnNewDocument", source=PROBE)
         self.screen(1280, 800)
 
     def message(self):
@@ -105,7 +130,7 @@ class Browser:
         """The middle of an element, which is scrolled to if need be. Nothing may be over it."""
         at = self.value(f"""(() => {{
             const part = document.querySelector({json.dumps(selector)})
-            part.scrollIntoView({{ block: 'nearest' }})
+            part.scrollIntoView({{ block: 'center' }})
             const box = part.getBoundingClientRect(), at = [box.x + box.width / 2, box.y + box.height / 2]
             const top = document.elementFromPoint(...at)
             return top && (part.contains(top) || top.contains(part)) ? at : `${{top && top.outerHTML.slice(0, 200)}} at ${{at}}` }})()""")

@@ -57,7 +57,7 @@ struct Row {
   std::string_view button_on{}; ///< the label while is_on(); empty: as `button`
   Buttons group = Buttons::none;
   std::uint8_t places = everywhere;
-  bool repeats = false; ///< the key repeats while it is held down in the window
+  bool repeats = false; ///< the key repeats while it is held down
   /// The setting that it changes (flow::SettingText::name); empty: none, or several.
   std::string_view setting{};
   /// Makes the command. `on`: is_on(), which the command then turns off.

@@ -23,8 +23,8 @@
 
 namespace nendo::edit {
 using namespace timeline;
-using viewer::EditCommand;
-using viewer::StripKey;
+using forms::EditCommand;
+using forms::StripKey;
 
 namespace {
 
@@ -103,8 +103,11 @@ commands::EditFacts EditSession::facts() const noexcept {
           history_.selected().has_value()};
 }
 
-void EditSession::handle(const viewer::EditActions& actions) {
-  if (actions.select) select(key_of(*actions.select));
+void EditSession::handle(const forms::EditActions& actions) {
+  if (actions.select) {
+    history_.keep(); // a trial with another key
+    select(key_of(*actions.select));
+  }
   if (actions.seek_s) seek(*actions.seek_s);
   if (actions.speed) head_.set_speed(*actions.speed);
   if (actions.tried) std::visit([this](const auto& tried) { try_out(tried); }, *actions.tried);
@@ -262,7 +265,7 @@ void EditSession::follow_history() {
   head_.seek(head_.time_s(), timeline.duration_s);
 }
 
-const viewer::TimelineView& EditSession::view() {
+const forms::TimelineView& EditSession::view() {
   const Timeline& timeline = history_.timeline();
   view_.head_s = head_.time_s();
   view_.loops = head_.loops();
@@ -288,16 +291,16 @@ const viewer::TimelineView& EditSession::view() {
 }
 
 /// The previous cells keep their pictures until others are drawn.
-void EditSession::set_cells(std::vector<viewer::StripPicture> cells) {
-  for (viewer::StripPicture& cell : cells)
-    for (const viewer::StripPicture& before : view_.pictures)
+void EditSession::set_cells(std::vector<forms::StripPicture> cells) {
+  for (forms::StripPicture& cell : cells)
+    for (const forms::StripPicture& before : view_.pictures)
       if (before.from_s == cell.from_s && before.to_s == cell.to_s) cell.image = before.image;
   view_.pictures = std::move(cells);
 }
 
 void EditSession::follow_pictures() {
   std::vector<ShapePictures::Shape> shapes;
-  for (const viewer::StripPicture& cell : view_.pictures) {
+  for (const forms::StripPicture& cell : view_.pictures) {
     const auto found = cache_.nearest((cell.from_s + cell.to_s) / 2.0);
     shapes.push_back(found.fresh ? found.shape : nullptr);
   }
@@ -319,7 +322,7 @@ void EditSession::follow_functions(const timeline::CachedShape* at_head) {
   constexpr std::size_t points = 240;
   const auto shapes = cache_.all();
   for (std::size_t at = 0; at < view_.functions.size(); ++at) {
-    viewer::FunctionCurve& curve = view_.functions[at];
+    forms::FunctionCurve& curve = view_.functions[at];
     curve.name = timeline.rig->puppet().functions[at].name;
     curve.over_time.clear();
     std::size_t next = 0; // the first shape that is not before the point
@@ -332,6 +335,13 @@ void EditSession::follow_functions(const timeline::CachedShape* at_head) {
     }
     curve.over_time.resize(points, curve.over_time.empty() ? 0.0F : curve.over_time.back());
   }
+}
+
+std::array<std::optional<puppet::HandState>, 2> EditSession::hands() const {
+  std::array<std::optional<puppet::HandState>, 2> hands;
+  for (const MovingHand& hand : hands_)
+    hands[flow::Placement::index_of(hand.skeleton.side())] = hand.at(head_.time_s());
+  return hands;
 }
 
 const render::SceneFrame& EditSession::scene_frame() {
@@ -365,7 +375,7 @@ Error nothing_selected() {
 
 } // namespace
 
-void EditSession::try_out(const viewer::KeyDrag& drag) {
+void EditSession::try_out(const forms::KeyDrag& drag) {
   const auto key = key_of(drag.key);
   if (!key) return;
   const auto done = history_.try_out([&](Timeline& timeline) -> Result<Selection> {
@@ -377,7 +387,7 @@ void EditSession::try_out(const viewer::KeyDrag& drag) {
   if (done) seek(drag.to_s);
 }
 
-void EditSession::try_out(const viewer::TipDrag& drag) {
+void EditSession::try_out(const forms::TipDrag& drag) {
   const Selection key = history_.selected();
   TipSet set;
   const auto done = history_.try_out([&](Timeline& timeline) -> Result<Selection> {
@@ -395,7 +405,7 @@ void EditSession::try_out(const viewer::TipDrag& drag) {
                    cli::fixed(1e3 * set.off_m, 3) + " mm off");
 }
 
-void EditSession::try_out(const viewer::KeyBlend& blend) {
+void EditSession::try_out(const forms::KeyBlend& blend) {
   const Selection key = history_.selected();
   report(history_.try_out([&](Timeline& timeline) -> Result<Selection> {
     if (!key) return nothing_selected();
@@ -450,7 +460,7 @@ void EditSession::mirror() {
          "mirrored");
 }
 
-void EditSession::retime(const viewer::Retiming& times) {
+void EditSession::retime(const forms::Retiming& times) {
   report(history_.apply([&](Timeline& timeline) {
     return after(timeline::retime(timeline, times.scale, times.from_s, times.to_s),
                  history_.selected());

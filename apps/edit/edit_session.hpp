@@ -1,7 +1,8 @@
 #pragma once
-// The editing session behind the window of `nendo edit view`. It turns a person's actions into
-// edits of the timeline, and the timeline into what the window shows. It does not know the window.
+// The editing session behind a window, or a page in a browser. It turns a person's actions into
+// edits of the timeline, and the timeline into what these show. It knows neither of them.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -11,12 +12,12 @@
 
 #include "commands/edit_command.hpp"
 #include "edit/shape_pictures.hpp"
+#include "forms/timeline_view.hpp"
 #include "render/scene_frame.hpp"
 #include "timeline/edit_history.hpp"
 #include "timeline/hand_curve.hpp"
 #include "timeline/play_head.hpp"
 #include "timeline/shape_cache.hpp"
-#include "viewer/timeline_view.hpp"
 
 namespace nendo::edit {
 
@@ -33,7 +34,7 @@ public:
 
   /// Does all that a person asks for, but to quit. What cannot be done is reported in the view's
   /// message.
-  void handle(const viewer::EditActions& actions);
+  void handle(const forms::EditActions& actions);
   /// Moves the play head on by the time that has passed.
   void advance(double elapsed_s);
   /// These do what `select` and `seek_s` of EditActions do.
@@ -41,8 +42,10 @@ public:
   void seek(double time_s);
 
   /// Returns the view of the present state. It is valid until the next call.
-  const viewer::TimelineView& view();
-  /// Returns the exact hands at the play head, and where they grabbed. The frame has no vertices.
+  const forms::TimelineView& view();
+  /// Returns the exact hands at the play head. Index: flow::Placement::index_of(side).
+  std::array<std::optional<puppet::HandState>, 2> hands() const;
+  /// Returns these hands, and where they grabbed. The frame has no vertices.
   const render::SceneFrame& scene_frame();
   /// Returns the available shape that is nearest to the play head.
   timeline::ShapeCache::Found shape() const { return cache_.nearest(head_.time_s()); }
@@ -58,16 +61,16 @@ private:
   void report(std::string message, bool refused = false);
   /// Reports `message` if `done` is no error, or else the message of the error.
   void report(const Result<void>& done, const std::string& message);
-  void handle(viewer::EditCommand command);
-  void execute(viewer::EditCommand command);
-  void try_out(const viewer::KeyDrag& drag);
-  void try_out(const viewer::TipDrag& drag);
-  void try_out(const viewer::KeyBlend& blend);
+  void handle(forms::EditCommand command);
+  void execute(forms::EditCommand command);
+  void try_out(const forms::KeyDrag& drag);
+  void try_out(const forms::TipDrag& drag);
+  void try_out(const forms::KeyBlend& blend);
   void add_keys();
   void delete_key();
   void copy_key();
   void mirror();
-  void retime(const viewer::Retiming& times);
+  void retime(const forms::Retiming& times);
   void save();
   void begin_export();
   void go_to_neighbour(bool next);
@@ -75,10 +78,10 @@ private:
   void step_history(bool redoes);
   void follow_history();
   void follow_functions(const timeline::CachedShape* at_head);
-  void set_cells(std::vector<viewer::StripPicture> cells);
+  void set_cells(std::vector<forms::StripPicture> cells);
   void follow_pictures();
   void follow_export();
-  std::optional<timeline::KeyRef> key_of(const viewer::StripKey& key) const;
+  std::optional<timeline::KeyRef> key_of(const forms::StripKey& key) const;
   commands::EditFacts facts() const noexcept;
   double head_limit_s() const noexcept { return history_.timeline().duration_s; }
 
@@ -95,7 +98,7 @@ private:
   /// The computed time and the revision of the history.
   using CurvesOf = std::pair<double, std::optional<std::uint64_t>>;
   CurvesOf curves_of_{-1.0, {}}; ///< those of the curves in view_
-  viewer::TimelineView view_;
+  forms::TimelineView view_;
   render::SceneFrame scene_frame_;
   bool has_all_pictures_ = false;
 };

@@ -4,10 +4,10 @@
 
 namespace nendo::edit {
 
-WindowEditing::WindowEditing(std::shared_ptr<viewer::SceneWindow> window,
-                             takes::TimelineFrames& frames, const std::string& out)
-    : window_(window), timeline_window_(std::move(window)),
-      session_(frames.player().timeline(), frames.model(0), out), model_(frames.player().model(0)) {
+WindowEditing::WindowEditing(std::shared_ptr<viewer::SceneWindow> window, EditSession& session,
+                             std::shared_ptr<const flow::ModelVersion> model)
+    : window_(window), timeline_window_(std::move(window)), session_(session),
+      model_(std::move(model)) {
   show_again();
 }
 
@@ -28,9 +28,9 @@ Result<void> WindowEditing::show() {
     before_ = now;
   }
   if (found.shape) window_->follow(found.shape->shape);
-  const viewer::TimelineView& view = session_.view();
+  const forms::TimelineView& view = session_.view();
   is_settled_ = found.fresh && !view.computing && session_.has_all_pictures();
-  const viewer::EditActions actions = timeline_window_.show(view, session_.scene_frame());
+  const forms::EditActions actions = timeline_window_.show(view, session_.scene_frame());
   session_.handle(actions);
   quits_ = actions.quit;
   if (auto error = session_.progress().error) return *std::move(error);

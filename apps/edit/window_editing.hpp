@@ -3,21 +3,19 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 
 #include <nendo/base/result.hpp>
 
 #include "edit/edit_session.hpp"
-#include "takes/timeline_frames.hpp"
 #include "viewer/timeline_window.hpp"
 
 namespace nendo::edit {
 
 class WindowEditing {
 public:
-  /// `frames` are those of the timeline, which is saved into `out`.
-  WindowEditing(std::shared_ptr<viewer::SceneWindow> window, takes::TimelineFrames& frames,
-                const std::string& out);
+  /// `session` must outlive this. `model` is the timeline's before the hands.
+  WindowEditing(std::shared_ptr<viewer::SceneWindow> window, EditSession& session,
+                std::shared_ptr<const flow::ModelVersion> model);
 
   /// Draws one picture, and does what the user asks for. Error: the shapes cannot be made.
   Result<void> show();
@@ -27,13 +25,11 @@ public:
   bool is_settled() const noexcept { return is_settled_; }
   /// Returns whether the user has asked to quit, in the last picture.
   bool quits() const noexcept { return quits_; }
-  EditSession& session() noexcept { return session_; }
-  const EditSession& session() const noexcept { return session_; }
 
 private:
   std::shared_ptr<viewer::SceneWindow> window_;
   viewer::TimelineWindow timeline_window_;
-  EditSession session_;
+  EditSession& session_;
   std::shared_ptr<const flow::ModelVersion> model_; ///< the one that the window shows
   std::optional<HostTime> before_;
   bool is_settled_ = false;

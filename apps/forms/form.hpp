@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "commands/commands.hpp"
+#include "forms/drawing.hpp"
 #include "render/image.hpp"
 
 namespace nendo::forms {
@@ -31,8 +32,8 @@ public:
 
   virtual ~Form() = default;
 
-  /// From now on, so many buttons, cards, boxes and choices share a line; 0: as many buttons
-  /// and cards as fit, each as wide as its text. At first it is 1.
+  /// From now on, so many buttons, cards, boxes and choices share a line; 0: as many buttons,
+  /// cards, boxes, numbers and lines of text as fit, each as wide as its text. At first it is 1.
   virtual void lines_of(std::size_t count) = 0;
   virtual void separator() = 0;
   /// `help` is a tooltip, also below; empty: none.
@@ -73,6 +74,10 @@ public:
   /// Lines below each other, of which one is the present one. Returns the line that was clicked.
   virtual std::optional<std::size_t> list(std::string_view name, std::string_view help,
                                           std::span<const Row> rows, std::size_t present) = 0;
+  /// A drawing as wide as the line. Returns what the user did with the pointer in it.
+  virtual Pointer drawing(std::string_view name, std::string_view help, const Drawing& drawing) = 0;
+  /// Returns whether the user may still hold the number that was changed last.
+  virtual bool is_changing() const = 0;
 };
 
 } // namespace nendo::forms

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "nendo/run_arguments.hpp"
-#include "studio/timeline_tab.hpp"
+#include "studio/studio_timeline.hpp"
 
 namespace nendo::app::run_command {
 

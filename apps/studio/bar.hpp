@@ -21,9 +21,6 @@ struct BarState {
   bool is_shaping = false; ///< a run has a shape, which can be saved
 };
 
-/// The user's answer to ask().
-enum class Answer : std::uint8_t { save, discard, stay };
-
 class Bar {
 public:
   /// Draws itself in each picture of the window, until it is destroyed.

@@ -1,35 +1,35 @@
 #pragma once
-// A run of the studio on a page: the tabs over it, a replay of its recording, and a question
-// before a changed shape is lost. Main thread.
+// A run of the studio on a page: the tabs over it, the timeline beside it, and a question before a
+// changed shape is lost. Main thread.
 
+#include <chrono>
 #include <cstdint>
-#include <memory>
 #include <string>
+#include <utility>
 
 #include "session/observer.hpp"
-#include "studio/page_replay.hpp"
+#include "studio/page_dialogs.hpp"
+#include "studio/page_timeline.hpp"
 #include "studio/wish.hpp"
 #include "web/page_form.hpp"
 #include "web/server.hpp"
 
 namespace nendo::studio {
 
-using forms::Form;
+/// Between descriptions of a screen.
+inline constexpr std::chrono::milliseconds picture_time(33);
 
 /// Describes the tabs, and the name of the file. Returns what was clicked.
 Wish describe_bar(web::PageForm& form, Screen now, const std::string& file);
 
-/// Removes the file of a wish that is not followed, if a browser sent it.
-void remove_sent(const Wish& wish);
-
 class PageRun final : public session::Observer {
 public:
   /// `file` is the model's name. `asks_to_save`: leaving asks whether the shape is saved, and a run
-  /// that is left does not write it.
-  PageRun(web::Server& server, LeftReadings& left, std::string file, bool asks_to_save)
-      : server_(server), left_readings_(left), file_(std::move(file)), asks_to_save_(asks_to_save) {
-  }
-  ~PageRun() override; ///< removes a file that was sent, if the user has not decided about it
+  /// that is left does not write it. `server` and `timeline` must outlive this.
+  PageRun(web::Server& server, PageTimeline& timeline, std::string file, bool asks_to_save)
+      : server_(server), timeline_(timeline), file_(std::move(file)), asks_to_save_(asks_to_save) {}
+  /// Leaves the timeline. Removes a file that was sent, if the user has not decided about it.
+  ~PageRun() override;
   PageRun(const PageRun&) = delete;
   PageRun& operator=(const PageRun&) = delete;
 
@@ -43,24 +43,34 @@ public:
 
 private:
   void follow_recording(const session::RunStatus& status);
-  void go_to(Screen screen, const session::RunStatus& status, session::Asks& asks);
-  void show_replay(const session::RunStatus& status, session::Asks& asks);
-  void go(const Wish& wish, const session::RunStatus& status, session::Asks& asks);
+  void follow_saving(const session::RunStatus& status, session::Asks& asks);
+  void open_sent(const session::RunStatus& status, session::Asks& asks);
+  void notify(const std::string& message, Form::Tone tone = Form::Tone::warning);
+  void show_dialog(const session::RunStatus& status, session::Asks& asks);
+  void show_timeline(const session::RunStatus& status, session::Asks& asks);
   void ask(session::Asks& asks);
+  void go(const Wish& wish, const session::RunStatus& status, session::Asks& asks);
+  void go_to(Screen screen, const session::RunStatus& status, session::Asks& asks);
   void leave(session::Asks& asks);
 
   web::Server& server_;
-  LeftReadings& left_readings_;
+  PageTimeline& timeline_;
   web::PageForm form_;
+  OpenDialog dialog_;
+  std::string message_; ///< shown over the timeline until it is closed
+  Form::Tone tone_ = Form::Tone::warning;
   std::string file_;
   bool asks_to_save_;
+  HostTime next_{}; ///< when the next picture is due
   bool is_settled_ = false;
   Wish waiting_; ///< where the user goes once it is settled what becomes of the shape
   Wish left_for_;
   bool saves_first_ = false;
-  std::string recorded_; ///< the file of the last recording
-  std::unique_ptr<PageReplay> replay_;
-  bool held_ = false;       ///< the hands held the model before the replay was shown
+  bool records_ = false;    ///< a recording is active
+  bool has_chosen_ = false; ///< the user has opened a file since the last recording began
+  std::string recorded_;    ///< the file of the last recording
+  bool shows_timeline_ = false;
+  bool held_ = false;       ///< the hands held the model before the timeline was shown
   std::uint32_t saves_ = 0; ///< the number of saves of the run so far
 };
 

@@ -11,9 +11,10 @@
 #include "cli/model_files.hpp"
 #include "studio/opened_files.hpp"
 #include "studio/page_calibration.hpp"
+#include "studio/page_dialogs.hpp"
 #include "studio/page_figures.hpp"
-#include "studio/page_replay.hpp"
 #include "studio/page_run.hpp"
+#include "studio/page_timeline.hpp"
 #include "studio/start_choices.hpp"
 #include "studio/studio_flow.hpp"
 #include "web/page_form.hpp"
@@ -22,17 +23,16 @@ namespace nendo::studio {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::chrono::milliseconds picture_time(33);
 constexpr const char* screen_names[] = {"start", "shaping", "shaping", "timeline", "calibration"};
 
 class PageStudio final : public StudioFlow {
 public:
   PageStudio(std::shared_ptr<web::Server> server, StudioOptions options)
-      : StudioFlow(std::move(options)), server_(std::move(server)) {}
+      : StudioFlow(std::move(options)), server_(std::move(server)), timeline_(*server_) {}
 
   std::optional<Shape> choose() override {
     cli::install_stop_signals();
-    view_.reset(); // and a replay beside the run
+    view_.reset(); // and the timeline beside the run
     if (std::exchange(has_run_, false)) server_->present_nothing();
     while (!is_over_ && !next_ && !cli::stop_requested()) {
       const auto due = std::chrono::steady_clock::now() + picture_time;
@@ -45,8 +45,7 @@ public:
   }
 
   session::Observer* observe(const session::RunOptions& run, bool asks_to_save) override {
-    view_ = std::make_unique<PageRun>(*server_, left_readings_, cli::short_name(run.mesh),
-                                      asks_to_save);
+    view_ = std::make_unique<PageRun>(*server_, timeline_, cli::short_name(run.mesh), asks_to_save);
     has_run_ = true;
     received_.clear(); // it can be read
     return view_.get();
@@ -63,16 +62,16 @@ public:
 
 private:
   Screen screen() const {
-    return replay_ ? Screen::timeline : calibration_ ? Screen::calibration : Screen::start;
+    return shows_timeline_ ? Screen::timeline : calibration_ ? Screen::calibration : Screen::start;
   }
 
   void show_one() {
     form_.begin(server_->next_input(web::FormKind::screen));
-    follow_safely(describe_bar(form_, screen(), {}));
+    follow_safely(describe_bar(form_, screen(), shows_timeline_ ? timeline_.title() : ""));
     show_dialog();
     const Screen now = screen(); // the bar and the dialog may lead to another one
     PageFigures figures;
-    if (now == Screen::timeline) follow_shown(replay_->update(form_));
+    if (now == Screen::timeline) follow_shown(timeline_.update(form_));
     if (now == Screen::calibration) follow_shown(calibration_->update(form_, figures));
     if (now == Screen::start) show_start(figures);
     server_->set_figures(figures.message());
@@ -88,34 +87,23 @@ private:
   }
 
   void show_dialog() {
-    if (is_wish(waiting_)) {
+    if (timeline_.is_asking()) {
+      const auto wish = timeline_.ask(form_);
+      wish ? follow_safely(*wish) : show_error(wish.error().message);
+    } else if (is_wish(waiting_)) {
       ask();
     } else if (!error_.empty()) {
-      form_.part("dialog");
-      form_.text(error_, Form::Tone::warning);
-      if (form_.button("Close", "")) error_.clear();
-    } else if (is_opening_) {
-      form_.part("dialog");
-      form_.title("Open a file", "");
-      form_.line("file name", file_);
-      form_.lines_of(2);
-      const auto look = file_.empty() ? Form::Look::grey : Form::Look::chosen;
-      if (form_.button("Open", "A file on the machine of the gloves.", look))
-        follow_safely(Open{file_});
-      if (form_.button("Cancel", "")) is_opening_ = false;
-      form_.file("Choose a file of this device", "It is copied to the machine of the gloves.");
+      if (show_message(form_, error_)) error_.clear();
+    } else if (dialog_.is_open()) {
+      follow_safely(dialog_.describe(form_));
     }
   }
 
   void ask() {
-    form_.part("dialog");
-    form_.text("Discard the poses?");
-    form_.lines_of(2);
-    const bool discards = form_.button("Discard", "");
-    const bool stays = form_.button("Stay", "", Form::Look::chosen);
-    if (!discards && !stays) return;
+    const auto answer = ask_to_discard(form_, "the poses");
+    if (!answer) return;
     const Wish wish = std::exchange(waiting_, {});
-    discards ? follow_seen(wish) : remove_sent(wish);
+    *answer == Answer::discard ? follow_seen(wish) : remove_sent(wish);
   }
 
   void show_start(PageFigures& figures) {
@@ -129,11 +117,12 @@ private:
     form_.part("hands");
     form_.title("Your hands", "");
     const Wish of_hands = start_->describe_hands(form_);
-    follow_seen(is_wish(of_hands) ? of_hands : of_ways);
+    follow_safely(is_wish(of_hands) ? of_hands : of_ways);
   }
 
-  /// Asks before poses of a calibration are lost.
+  /// Asks before edits of the timeline, or poses of a calibration, are lost.
   void follow_safely(const Wish& wish) {
+    if (!timeline_.lets(wish)) return;
     if (!is_wish(wish) || !calibration_ || !calibration_->has_unkept_poses())
       return follow_seen(wish);
     remove_sent(std::exchange(waiting_, wish));
@@ -145,6 +134,7 @@ private:
   }
 
   Wish left_for() const override { return view_ ? view_->left_for() : Wish{}; }
+  bool has_edits_to_lose() const override { return timeline_.has_edits_to_lose(); }
   NamedGlove found_glove() const override { return start_ ? start_->found_glove() : NamedGlove{}; }
 
   void leave_screen() override {
@@ -152,13 +142,16 @@ private:
     remove_sent(std::exchange(waiting_, {}));
     start_.reset();
     calibration_.reset();
-    replay_.reset();
+    timeline_.leave();
+    shows_timeline_ = false;
     form_.forget_images();
   }
 
   void enter_timeline(const std::string& file) override {
     leave_screen();
-    replay_ = std::make_unique<PageReplay>(*server_, left_readings_, file);
+    shows_timeline_ = true;
+    // The timeline removes a file that was sent, if it cannot be read.
+    if (!file.empty()) timeline_.open({file, !std::exchange(received_, {}).empty()});
   }
 
   void enter_calibration(const NamedGlove& glove) override {
@@ -178,36 +171,32 @@ private:
 
   void open(const Open& wanted) override {
     const std::string& file = wanted.file;
-    is_opening_ = file.empty();
-    if (is_opening_) return;
+    if (file.empty()) return dialog_.open();
+    dialog_.close();
     received_ = wanted.was_sent ? file : "";
-    // Who uses the page from elsewhere shall learn nothing of other files.
-    if (const auto fine = check_openable(file); !fine) return show_error(fine.error().message);
-    std::error_code error;
-    if (!fs::is_regular_file(file, error))
-      return show_error(printable(file) + ": there is no such file on the machine of the gloves");
+    if (const auto fine = check_there(file); !fine) return show_error(fine.error().message);
     begin_with(file);
   }
 
   void open_received(const web::Server::File& file) {
     received_.clear();
-    const auto stored = store_sent(file.name, file.bytes);
+    dialog_.close();
+    const auto stored = store_sent(file.name, file.bytes, timeline_.out());
     if (!stored) return show_error(stored.error().message);
     follow_safely(Open{*stored, true});
   }
 
   std::shared_ptr<web::Server> server_;
   web::PageForm form_;
-  LeftReadings left_readings_;
+  PageTimeline timeline_;
   std::unique_ptr<StartChoices> start_;
-  std::unique_ptr<PageReplay> replay_;
   std::unique_ptr<PageCalibration> calibration_;
   std::unique_ptr<PageRun> view_;
   std::string error_;    ///< shown until it is closed
   std::string received_; ///< a file that was sent, removed if it cannot be read; empty: none
   Wish waiting_;         ///< where the user goes once the poses of the calibration are discarded
-  bool is_opening_ = false;
-  std::string file_;    ///< the name that is typed
+  bool shows_timeline_ = false;
+  OpenDialog dialog_;
   bool has_run_ = true; ///< the server has another loop
 };
 

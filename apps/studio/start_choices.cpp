@@ -123,6 +123,7 @@ Wish StartChoices::describe_ways(Form& form, std::string_view opening) {
   }
   form.lines_of(0);
   if (form.button("Open a file...", "")) wish = Open{};
+  form.lines_of(1);
   form.text(opening, Form::Tone::faint);
   return wish;
 }

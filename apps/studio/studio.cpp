@@ -73,9 +73,9 @@ private:
   /// Only pictures on which nothing is missing count.
   bool is_complete() {
     if (screen_ == Screen::timeline) {
-      edit::WindowEditing* const editing = timeline_.editing();
-      if (editing != nullptr && options_.view.frames > 0) editing->session().hurry_pictures();
-      return editing != nullptr && editing->is_settled();
+      edit::EditSession* const session = timeline_.session();
+      if (session != nullptr && options_.view.frames > 0) session->hurry_pictures();
+      return timeline_.is_settled();
     }
     return start_ && start_->is_complete();
   }
@@ -89,9 +89,11 @@ private:
   }
 
   Wish show_timeline() {
-    const Wish wish = timeline_.show();
-    if (!timeline_.is_open()) screen_ = Screen::start;
-    return wish;
+    const auto wish = timeline_.show();
+    if (wish) return *wish;
+    bar_.show_error(wish.error().message);
+    screen_ = Screen::start;
+    return {};
   }
 
   Wish show_calibration() {
@@ -110,6 +112,7 @@ private:
   }
 
   Wish left_for() const override { return view_ ? view_->left_for() : Wish{}; }
+  bool has_edits_to_lose() const override { return timeline_.has_edits_to_lose(); }
   NamedGlove found_glove() const override { return start_ ? start_->found_glove() : NamedGlove{}; }
   void open(const Open& wanted) override { begin_with(wanted.file); }
 

@@ -11,7 +11,7 @@
 
 #include "session/run_options.hpp"
 #include "session/views.hpp"
-#include "studio/timeline_tab.hpp"
+#include "studio/studio_timeline.hpp"
 #include "studio/wish.hpp"
 
 namespace nendo::studio {

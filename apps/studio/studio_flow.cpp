@@ -10,8 +10,10 @@
 namespace nendo::studio {
 
 bool StudioFlow::goes_on() {
-  const Wish wish = left_for();
-  if (!is_wish(wish)) is_over_ = true; // the run has ended by itself
+  Wish wish = left_for();
+  // A run that has ended by itself ends the studio, unless the user would lose edits.
+  if (!is_wish(wish) && has_edits_to_lose()) wish = Go{Screen::timeline};
+  if (!is_wish(wish)) is_over_ = true;
   follow(wish);
   return !is_over_;
 }

@@ -35,6 +35,8 @@ private:
 
   /// Returns where the user went when the run was left.
   virtual Wish left_for() const = 0;
+  /// Returns whether the timeline has edits that the user has neither saved nor discarded.
+  virtual bool has_edits_to_lose() const = 0;
   virtual void begin_run(const Shape& shape) { next_ = shape; }
   /// Opens the file; without its name, asks for one.
   virtual void open(const Open& wanted) = 0;

@@ -5,6 +5,7 @@
 
 #include "session/kept_state.hpp"
 #include "session/run_saving.hpp"
+#include "studio/opened_files.hpp"
 #include "viewer/live_window.hpp"
 #include "viewer/puppet_editor.hpp"
 
@@ -61,18 +62,24 @@ void StudioView::show_shaping(const RunStatus& status, Asks& asks) {
 }
 
 void StudioView::show_timeline(const RunStatus& status, Asks& asks) {
-  const Wish wish = timeline().show();
-  if (!timeline().is_open()) go_to(Screen::shaping, status, asks);
-  if (is_wish(wish)) go(wish, status, asks);
+  const auto wish = timeline().show();
+  if (wish && is_wish(*wish)) go(*wish, status, asks);
+  if (wish) return;
+  parts_.bar.show_error(wish.error().message);
+  go_to(Screen::shaping, status, asks);
 }
 
-/// The tab opens the new recording, unless edits of another one are unsaved.
+/// The tab opens the new recording, unless another timeline is in use, or the user has opened one
+/// since the recording began.
 void StudioView::follow_recording(const RunStatus& status) {
+  const bool recorded_before = std::exchange(records_, status.facts.recorded);
+  if (records_ && !recorded_before) has_chosen_ = false;
   if (status.recorded == recorded_) return;
   recorded_ = status.recorded;
   session::keep_recent_file(recorded_);
-  if (!timeline().is_modified()) timeline().open(recorded_);
-  report("recorded in " + recorded_ + "; the tab Timeline opens it");
+  const bool opens = !has_chosen_ && !timeline().is_in_use();
+  if (opens) timeline().open(recorded_);
+  report("recorded in " + recorded_ + (opens ? "; the tab Timeline opens it" : ""));
 }
 
 /// A run reports each save, and each that failed, which keeps the user here.
@@ -108,6 +115,7 @@ void StudioView::go(const Wish& wish, const RunStatus& status, Asks& asks) {
   if (const auto* const open = std::get_if<Open>(&wish)) {
     if (opens_in_timeline(open->file)) {
       timeline().open(open->file);
+      has_chosen_ = true;
       session::keep_recent_file(open->file);
       return go_to(Screen::timeline, status, asks);
     }

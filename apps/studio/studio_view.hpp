@@ -58,6 +58,8 @@ private:
   /// The shape is saved before: the dialog is open, or the run saves it, or has tried to.
   enum class Saving : std::uint8_t { none, asked, begun, tried } saving_ = Saving::none;
   std::uint32_t saves_ = 0; ///< the number of saves of the run so far
+  bool records_ = false;    ///< a recording is active
+  bool has_chosen_ = false; ///< the user has opened a file since the last recording began
   std::string recorded_;
   bool shows_timeline_ = false;
   bool held_ = false; ///< the hands held the model before the timeline was shown

@@ -68,4 +68,7 @@ inline bool is_wish(const Wish& wish) noexcept {
   return !std::holds_alternative<std::monostate>(wish);
 }
 
+/// The user's answer to a question before something is lost.
+enum class Answer : std::uint8_t { save, discard, stay };
+
 } // namespace nendo::studio

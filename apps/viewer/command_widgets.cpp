@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "viewer/controls.hpp"
-#include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
 
 namespace nendo::viewer {
@@ -81,17 +80,6 @@ bool row_button(const commands::Row& row, const commands::State& now, float widt
 
 void show_help(const commands::Row& row, const commands::State& now) {
   show_text(commands::help_of(row, now));
-}
-
-void edit_buttons(commands::Buttons group, const commands::EditFacts& now, float width,
-                  std::vector<commands::EditCommand>& asked) {
-  bool is_first = true;
-  for (const commands::Row& row : commands::table()) {
-    if (row.group != group) continue;
-    if (!std::exchange(is_first, false)) ImGui::SameLine();
-    if (row_button(row, now, row.button_on.empty() ? width : 2.0F * width))
-      asked.push_back(row.edit->command);
-  }
 }
 
 void show_help(std::string_view name, std::string_view text) {

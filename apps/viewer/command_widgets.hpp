@@ -1,9 +1,7 @@
 #pragma once
 // The command table in windows: keys, buttons and tooltips.
 
-#include <cstdint>
 #include <string_view>
-#include <vector>
 
 #include "commands/commands.hpp"
 
@@ -29,10 +27,6 @@ bool is_struck(const commands::Row& row);
 /// Draws the row's button, disabled if the command is not possible. Width 0: as wide as its text.
 /// Returns whether it was pressed.
 bool row_button(const commands::Row& row, const commands::State& now, float width);
-/// Draws a group of timeline buttons in one line, those with two labels twice as wide, and appends
-/// pressed commands to `asked`.
-void edit_buttons(commands::Buttons group, const commands::EditFacts& now, float width,
-                  std::vector<commands::EditCommand>& asked);
 /// Shows a tooltip with the row's help and keys, or its refusal, for the latest item.
 void show_help(const commands::Row& row, const commands::State& now);
 /// Shows a tooltip with `text`, or else the row's help, and the keys of the row of that name.

@@ -1,37 +1,42 @@
 #include "viewer/timeline_window.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
 #include <utility>
 
 #include <imgui.h>
 
 #include "commands/commands.hpp"
+#include "forms/timeline_panel.hpp"
 #include "viewer/command_search.hpp"
 #include "viewer/command_widgets.hpp"
 #include "viewer/controls.hpp"
-#include "viewer/dope_sheet_widget.hpp"
 #include "viewer/pointing.hpp"
 #include "viewer/theme.hpp"
 #include "viewer/widgets.hpp"
+#include "viewer/window_form.hpp"
 
 namespace nendo::viewer {
 namespace {
 
-constexpr const char* mouse_words =
+using forms::DopeSheet;
+using forms::EditActions;
+using forms::EditCommand;
+using forms::TimelineView;
+using forms::TipDrag;
+
+constexpr const char* mouse_in_timeline =
     "drag on the strip scrubs, wheel zooms it, middle drag shifts it;\n"
     "a key: click selects, drag moves, ctrl drag copies;\n"
     "a ringed fingertip: drag bends the finger, with the wheel away and back";
 
-void seconds(const char* label, double& value_s, double head_s) {
-  ImGui::PushID(label);
-  ImGui::SetNextItemWidth(em(7.4F));
-  ImGui::InputDouble(label, &value_s, 0.0, 0.0, "%.3f s");
-  ImGui::SameLine();
-  if (ImGui::SmallButton("= head")) value_s = head_s;
-  ImGui::PopID();
+constexpr float margin_em = 0.4F; ///< about the strip
+
+/// Returns the usual height in pixels of the strip below the picture.
+int strip_height(std::size_t lanes) {
+  const ImGuiStyle& style = ImGui::GetStyle(); // the font has no size before the first picture
+  const float controls = em(1.0F) + 2.0F * style.FramePadding.y + style.ItemSpacing.y;
+  return static_cast<int>(scale() * static_cast<float>(DopeSheet::height_for(lanes)) + controls +
+                          em(2.0F * margin_em));
 }
 
 constexpr ImU32 ring_colour = IM_COL32(255, 160, 40, 230);
@@ -52,120 +57,55 @@ const render::SceneHand* bendable_hand(const TimelineView& view,
 struct TimelineWindow::Panel {
   static constexpr float width_em = 20.0F;
 
-  DopeSheetWidget strip;
+  forms::TimelinePanel described{true};
+  int strip_px = 0; ///< height of the strip in the last picture; 0: there was none
+  WindowForm form, strip;
   struct {
     std::optional<hand::Finger> held; ///< the fingertip that the mouse drags
     PlaceMover target;
   } tips;
-  Retiming retiming{0.0, 0.0, 2.0};
-  bool retiming_shown = false;
   CommandSearch search;
-  float blend = 0.0F;
-  bool blends = false; ///< the mouse holds the slider
 
   /// Above the strip, where it is scrolled if it is too long.
   void draw(const TimelineView& view, const SceneWindow& window, EditActions& actions) {
     const float gap = em(gap_em), panel_width = em(width_em), top = gap + window.above_px();
     const float high = static_cast<float>(window.scene_size().height) - gap - top;
     begin_pane("Nendo: edit", {gap, top}, {0.0F, 0.0F}, {panel_width, std::max(em(3.0F), high)}, 0);
-    ImGui::PushTextWrapPos(panel_width - em(0.8F));
-    file(view, actions);
-    if (section("Key", "The selected key.", true)) key(view, actions);
-    if (!view.functions.empty() &&
-        section("Functions", "What each function of the puppet is at the play head.", true))
-      functions(view);
-    retiming_shown = section("Timeline", "Changes of the whole timeline.", false);
-    if (retiming_shown) whole(view, actions);
-    if (!view.message.empty()) {
-      ImGui::Separator();
-      if (view.refused) ImGui::PushStyleColor(ImGuiCol_Text, warning());
-      ImGui::TextUnformatted(view.message.c_str());
-      if (view.refused) ImGui::PopStyleColor();
-    }
-    ImGui::PopTextWrapPos();
+    described.describe(form, view, actions);
     ImGui::End();
+  }
+
+  /// At the window's bottom, over its whole width.
+  void draw_strip(const TimelineView& view, EditActions& actions) {
+    const ImVec2 all = ImGui::GetIO().DisplaySize;
+    const auto height = static_cast<float>(strip_px);
+    const float margin = em(margin_em);
+    ImGui::SetNextWindowPos(ImVec2(0.0F, all.y - height));
+    ImGui::SetNextWindowSize(ImVec2(all.x, height));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(margin, margin));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0F);
+    ImGui::Begin("strip", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_NoScrollWithMouse);
+    described.describe_strip(strip, view, actions);
+    // In a narrow window, the controls may take two lines.
+    strip_px = static_cast<int>(ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + margin);
+    ImGui::End();
+    ImGui::PopStyleVar(2);
   }
 
   /// Handles keys, and draws the list of commands.
   void keys(const TimelineView& view, SceneWindow& window, EditActions& actions) {
     window.follow_view_keys();
-    for (const auto* const row : search.asked(commands::in_timeline, view.facts, mouse_words)) {
+    for (const auto* const row :
+         search.asked(commands::in_timeline, view.facts, mouse_in_timeline)) {
       window.execute(row->name);
-      // The same stroke of Esc may have cancelled a drag.
-      if (row->edit && !(row->edit->command == EditCommand::select_none && actions.drop))
-        actions.commands.push_back(row->edit->command);
+      // The same stroke of Esc may have cancelled the drag of a fingertip.
+      const bool is_esc = row->edit && row->edit->command == EditCommand::select_none;
+      if (row->edit && !(is_esc && actions.drop)) described.add(row->edit->command, actions);
       if (row->name == "end edit") actions.quit = true;
     }
-  }
-
-private:
-  static void file(const TimelineView& view, EditActions& actions) {
-    const std::string name = std::filesystem::path(view.file).filename().string();
-    ImGui::Text("%s%s   (? for keys)", name.c_str(), view.modified ? " *" : "");
-    edit_buttons(commands::Buttons::file, view.facts, 0.0F, actions.commands);
-  }
-
-  void key(const TimelineView& view, EditActions& actions) {
-    const bool any = view.selected.has_value();
-    if (any) {
-      const StripLane& lane = view.lanes[view.selected->lane];
-      ImGui::Text("%s hand, key %zu of %zu, at %.3f s", std::string(name_of(lane.side)).c_str(),
-                  view.selected->key, lane.keys_s.size(), lane.keys_s[view.selected->key]);
-    } else {
-      ImGui::TextDisabled("click a key on the strip to select it");
-    }
-    edit_buttons(commands::Buttons::key, view.facts, 0.0F, actions.commands);
-    ImGui::BeginDisabled(!any);
-    if (number_field("blend", blend, 0.0F, 1.0F, "%.2f")) {
-      blends = true;
-      actions.tried = KeyBlend{static_cast<double>(std::clamp(blend, 0.0F, 1.0F))};
-    }
-    ImGui::EndDisabled();
-    show_text("With its neighbours: what would be without it is 1.");
-    if (blends && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-      actions.keep = true;
-      blends = false;
-      blend = 0.0F;
-    }
-    if (any)
-      ImGui::TextDisabled("%s", view.at_selected
-                                    ? "drag a ringed fingertip to bend its finger"
-                                    : "the head is elsewhere: click the key to bend its fingers");
-  }
-
-  /// A line for each: its value, and its curve over the whole timeline with the play head.
-  static void functions(const TimelineView& view) {
-    const double head = view.duration_s > 0.0 ? view.head_s / view.duration_s : 0.0;
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(em(0.5F), em(0.15F)));
-    for (const FunctionCurve& function : view.functions) {
-      char words[96];
-      std::snprintf(words, sizeof words, "%s %.2f", function.name.c_str(), function.value);
-      ImGui::AlignTextToFramePadding();
-      ImGui::TextUnformatted(words);
-      note_control("function " + function.name, words);
-      show_text("The value of " + function.name + " at the play head, and its curve.");
-      ImGui::SameLine(em(10.8F));
-      const auto& values = function.over_time;
-      const bool is_signed = std::ranges::any_of(values, [](float one) { return one < -0.05F; });
-      ImGui::PlotLines(("##" + function.name).c_str(), values.data(),
-                       static_cast<int>(values.size()), 0, nullptr, is_signed ? -1.0F : 0.0F, 1.0F,
-                       ImVec2(ImGui::GetContentRegionAvail().x, em(1.7F)));
-      const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-      const float x = low.x + static_cast<float>(head) * (high.x - low.x);
-      ImGui::GetWindowDrawList()->AddLine({x, low.y}, {x, high.y}, ImGui::GetColorU32(warning()),
-                                          1.5F * scale());
-    }
-    ImGui::PopStyleVar();
-  }
-
-  void whole(const TimelineView& view, EditActions& actions) {
-    edit_buttons(commands::Buttons::whole, view.facts, 0.0F, actions.commands);
-    if (retiming.to_s <= retiming.from_s) retiming.to_s = view.duration_s;
-    seconds("from", retiming.from_s, view.head_s);
-    seconds("to", retiming.to_s, view.head_s);
-    ImGui::SetNextItemWidth(em(7.4F));
-    ImGui::InputDouble("times as long", &retiming.scale, 0.0, 0.0, "%.3f");
-    if (ImGui::Button("Retime")) actions.retiming = retiming;
   }
 };
 
@@ -176,13 +116,13 @@ TimelineWindow::~TimelineWindow() = default;
 
 EditActions TimelineWindow::show(const TimelineView& view, const render::SceneFrame& scene_frame) {
   EditActions actions;
-  window_->leave_below(DopeSheetWidget::height_for(view.lanes.size()));
+  if (panel_->strip_px == 0) panel_->strip_px = strip_height(view.lanes.size());
+  window_->leave_below(panel_->strip_px);
   window_->leave_left(static_cast<int>(em(gap_em + Panel::width_em)));
   window_->begin_picture(scene_frame);
   if (!move_tip(view, scene_frame, actions)) window_->move_camera();
   mark_tips(view, scene_frame);
-  panel_->strip.draw(view, panel_->retiming_shown ? std::optional(panel_->retiming) : std::nullopt,
-                     actions);
+  panel_->draw_strip(view, actions);
   panel_->draw(view, *window_, actions);
   panel_->keys(view, *window_, actions);
   if (window_->take_close_request()) actions.quit = true;

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "forms/timeline_view.hpp"
 #include "viewer/scene_window.hpp"
-#include "viewer/timeline_view.hpp"
 
 namespace nendo::viewer {
 
@@ -21,15 +21,15 @@ public:
 
   /// Draws one picture and waits for the screen, or for at most 8 ms if there is none. Ignores the
   /// vertices of `scene_frame`.
-  EditActions show(const TimelineView& view, const render::SceneFrame& scene_frame);
+  forms::EditActions show(const forms::TimelineView& view, const render::SceneFrame& scene_frame);
 
   SceneWindow& scene_window() noexcept { return *window_; } ///< the caller sets model and shapes
 
 private:
   struct Panel;
-  bool move_tip(const TimelineView& view, const render::SceneFrame& scene_frame,
-                EditActions& actions);
-  void mark_tips(const TimelineView& view, const render::SceneFrame& scene_frame) const;
+  bool move_tip(const forms::TimelineView& view, const render::SceneFrame& scene_frame,
+                forms::EditActions& actions);
+  void mark_tips(const forms::TimelineView& view, const render::SceneFrame& scene_frame) const;
 
   std::shared_ptr<SceneWindow> window_;
   std::unique_ptr<Panel> panel_;

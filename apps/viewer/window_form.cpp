@@ -70,7 +70,10 @@ void WindowForm::separator() {
 }
 
 void WindowForm::text(std::string_view words, Tone tone, std::string_view help) {
-  lines_of(in_line_);
+  if (in_line_ == 0)
+    next_width(words);
+  else
+    lines_of(in_line_);
   ImGui::PushTextWrapPos(0.0F);
   ImGui::PushStyleColor(ImGuiCol_Text, colour_of(tone));
   if (tone == Tone::title) ImGui::PushFont(large_font());
@@ -153,7 +156,10 @@ bool WindowForm::card(std::string_view name, const render::Image* picture, std::
 }
 
 bool WindowForm::command(const commands::Row& row, const commands::State& now) {
-  return row_button(row, now, next_width(row.button));
+  // A button in the line keeps its width when its label changes.
+  const float share = next_width(row.button);
+  const bool keeps = in_line_ == 0 && !row.button_on.empty();
+  return row_button(row, now, keeps ? em(4.5F) : share);
 }
 
 bool WindowForm::box(std::string_view name, const commands::Row& row, const commands::State& now,
@@ -171,6 +177,7 @@ bool WindowForm::box(std::string_view name, const commands::Row& row, const comm
 }
 
 bool WindowForm::check(std::string_view name, std::string_view help, bool& value) {
+  if (in_line_ == 0) next_width(name);
   const bool changed = viewer::check(name, value);
   show_tip(help);
   return changed;
@@ -198,7 +205,14 @@ bool WindowForm::number(std::string_view name, std::string_view help, float& val
                         float max, std::string_view unit, int decimals) {
   std::string format = "%." + std::to_string(decimals) + "f";
   if (!unit.empty()) format.append(" ").append(unit);
-  const bool changed = number_field(name, value, min, max, format.c_str());
+  bool changed = false;
+  if (in_line_ == 0) {
+    next_width(name);
+    changed =
+        bar_field(name, value, min, max, (std::string(name) + " " + format).c_str(), em(7.4F));
+  } else {
+    changed = number_field(name, value, min, max, format.c_str());
+  }
   if (!help.empty())
     show_text(std::string(help) + "\nDrag, double click to type, or ctrl and the wheel.");
   return changed;
@@ -232,6 +246,19 @@ std::optional<std::size_t> WindowForm::list(std::string_view name, std::string_v
   }
   ImGui::EndChild();
   return clicked;
+}
+
+forms::Pointer WindowForm::drawing(std::string_view name, std::string_view help,
+                                   const forms::Drawing& drawing) {
+  lines_of(1);
+  auto& drawn = drawings_[std::string(name)];
+  const forms::Pointer pointer = drawn.draw(name, drawing);
+  show_tip(drawing.tooltip.empty() ? help : drawing.tooltip);
+  return pointer;
+}
+
+bool WindowForm::is_changing() const {
+  return ImGui::IsMouseDown(ImGuiMouseButton_Left);
 }
 
 } // namespace nendo::viewer

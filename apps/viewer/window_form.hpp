@@ -8,6 +8,7 @@
 
 #include "forms/form.hpp"
 #include "gl/picture.hpp"
+#include "viewer/window_drawing.hpp"
 
 namespace nendo::viewer {
 
@@ -39,6 +40,9 @@ public:
   bool line(std::string_view name, std::string& value) override;
   std::optional<std::size_t> list(std::string_view name, std::string_view help,
                                   std::span<const Row> rows, std::size_t present) override;
+  forms::Pointer drawing(std::string_view name, std::string_view help,
+                         const forms::Drawing& drawing) override;
+  bool is_changing() const override;
 
 private:
   /// What a list showed in the last picture.
@@ -53,6 +57,7 @@ private:
   float left_ = 0.0F, width_ = 0.0F; ///< the first column's, and each column's
   std::map<const render::Image*, std::unique_ptr<gl::Picture>> pictures_;
   std::map<std::string, Shown, std::less<>> lists_;
+  std::map<std::string, WindowDrawing, std::less<>> drawings_;
 };
 
 } // namespace nendo::viewer

@@ -166,6 +166,49 @@ Result<ClientCommand> parse_command(std::string_view text) {
   return ClientCommand(*command);
 }
 
+namespace {
+
+std::optional<PointerInput> pointer_in(std::string_view text) noexcept {
+  constexpr std::array<std::string_view, 6> events{"size", "leave", "move", "down", "drag", "up"};
+  const auto* const event = std::ranges::find(events, cut(text, '\t'));
+  ItemReader words(text, ' ');
+  std::array<double, 5> numbers{};
+  if (event == events.end() || !read_numbers(words, numbers) || !words.has_ended())
+    return std::nullopt;
+  for (double& number : numbers)
+    number = std::clamp(number, -PointerInput::max_number, PointerInput::max_number);
+  return PointerInput{static_cast<PointerInput::Event>(event - events.begin()),
+                      numbers[0],
+                      numbers[1],
+                      numbers[2],
+                      numbers[3],
+                      numbers[4] != 0.0};
+}
+
+double limited_sum(double a, double b) noexcept {
+  return std::clamp(a + b, -PointerInput::max_number, PointerInput::max_number);
+}
+
+} // namespace
+
+bool FormInput::take_in(const FormInput& next) {
+  using Event = PointerInput::Event;
+  if (control != next.control || form != next.form ||
+      pointer.has_value() != next.pointer.has_value())
+    return false;
+  if (!pointer) {
+    if (next.value.empty()) return false; // two presses of a button
+    value = next.value;
+    return true;
+  }
+  const Event event = pointer->event;
+  if (event != next.pointer->event || event == Event::down || event == Event::up) return false;
+  const PointerInput before = *std::exchange(pointer, next.pointer);
+  pointer->panned = limited_sum(before.panned, pointer->panned);
+  pointer->wheel = limited_sum(before.wheel, pointer->wheel);
+  return true;
+}
+
 Result<FormInput> parse_form_input(std::string_view text) {
   std::string_view value = text;
   const std::string_view form = cut(value, '\t');
@@ -174,20 +217,27 @@ Result<FormInput> parse_form_input(std::string_view text) {
     return static_cast<unsigned char>(c) < ' ' || c == '\x7F';
   };
   const bool is_panel = form == "panel";
+  const auto pointer = pointer_in(value);
+  if (pointer) value = {};
   if ((!is_panel && form != "form") || control.empty() ||
       std::ranges::any_of(control, is_control_character) ||
       std::ranges::any_of(value, is_control_character))
     return Error{Errc::bad_input,
                  "form: write form or panel, the id of a control and its value, after tabs"};
   return FormInput{std::string(control), std::string(value),
-                   is_panel ? FormKind::run : FormKind::screen};
+                   is_panel ? FormKind::run : FormKind::screen, pointer};
 }
 
 namespace {
 
-// A test sees that no text of the tables has a quotation mark, a backslash or a "<".
+// A test sees that no help has a quotation mark, a backslash or a "<". A button may have a "<",
+// which ends no script.
 std::string js_text(std::string_view text) {
   return '"' + std::string(text) + '"';
+}
+
+const char* js_truth(bool is_true) noexcept {
+  return is_true ? "true" : "false";
 }
 
 } // namespace
@@ -195,12 +245,16 @@ std::string js_text(std::string_view text) {
 std::string page_commands() {
   std::string list = "[";
   for (const commands::Row& row : commands::table()) {
-    if ((row.places & commands::on_page) == 0) continue;
+    const bool in_run = (row.places & commands::on_page) != 0;
+    if (!in_run && !row.edit) continue;
     list += "\n  { name: " + js_text(row.name) + ", keys: [";
     for (const std::string_view key : row.keys)
       if (!key.empty()) list += js_text(key) + ',';
     list += "], help: " + js_text(row.help) + ", button: " + js_text(row.button) +
-            ", isForRun: " + (row.is_for_run() ? "true" : "false") + " },";
+            ", isForRun: " + js_truth(row.is_for_run()) +
+            ", isEdit: " + js_truth(row.edit.has_value()) + ", inRun: " + js_truth(in_run) +
+            ", inTimeline: " + js_truth((row.places & commands::in_timeline) != 0) +
+            ", repeats: " + js_truth(row.repeats) + " },";
   }
   return list + "\n]";
 }

@@ -4,6 +4,7 @@
 // for the page and other clients.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -44,18 +45,37 @@ Result<ClientCommand> parse_command(std::string_view text);
 enum class FormKind : std::uint8_t { screen, run, status };
 inline constexpr std::size_t form_kinds = 3;
 
+/// What the pointer did in a drawing of a form. The numbers are finite, and at most max_number.
+struct PointerInput {
+  static constexpr double max_number = 1e5;
+  /// `size`: the drawing's line has got a width, which is x. `drag`: a move with the main button.
+  enum class Event : std::uint8_t { size, leave, move, down, drag, up };
+  Event event = Event::move;
+  double x = 0.0; ///< px, from the drawing's top left corner
+  double y = 0.0;
+  double panned = 0.0; ///< px to the right with the middle button, since the previous event
+  double wheel = 0.0;  ///< steps since the previous event; positive: away from the user
+  bool has_control = false;
+};
+
 /// What a user did to a control of a form.
 struct FormInput {
   std::string control; ///< its id
-  std::string value;   ///< the new value; empty for buttons
+  std::string value;   ///< the new value; empty for buttons and the pointer
   FormKind form = FormKind::screen;
+  std::optional<PointerInput> pointer{};
+
+  /// Takes in the next input of the form, if both have the effect of one: the last value of a
+  /// slider, or the sum of moves. Presses and releases remain. Returns whether it did.
+  bool take_in(const FormInput& next);
 };
-/// Parses "form" or, for the run's, "panel", an id and a value, separated by tabs. Error:
-/// bad_input, in at most max_close_reason bytes.
+/// Parses "form" or, for the run's, "panel", an id and a value, separated by tabs. For a drawing
+/// the value is an event, a tab and five numbers. Error: bad_input, in at most max_close_reason
+/// bytes.
 Result<FormInput> parse_form_input(std::string_view text);
 
-/// Returns the page's rows as a JavaScript array of objects with name, keys, help, button and
-/// isForRun.
+/// Returns the page's rows as a JavaScript array of objects with name, keys, help, button,
+/// isForRun, isEdit, inRun, inTimeline and repeats.
 std::string page_commands();
 
 /// Returns the hints for the first start as a JavaScript array of objects with keys and text.

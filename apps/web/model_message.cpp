@@ -29,7 +29,7 @@ Pictures pictures_of(const deform::Mesh& mesh) {
 }
 
 std::optional<std::size_t> picture_number(std::string_view text) noexcept {
-  constexpr std::size_t max_digits = 6;
+  constexpr std::size_t max_digits = 9;
   return text.size() > max_digits ? std::nullopt : number_in<std::size_t>(text);
 }
 

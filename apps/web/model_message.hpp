@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +22,10 @@ namespace nendo::web {
 /// Index: as in deform::Appearance::textures; null: no picture.
 using Pictures = std::vector<std::shared_ptr<const std::string>>;
 
+/// The pictures of forms by their numbers, of which none is that of a texture.
+using FormPictures = std::map<std::size_t, std::shared_ptr<const std::string>>;
+inline constexpr std::size_t first_form_picture = 1'000'000;
+
 /// Returns the textures as PNG or JPEG, for browsers. Slowly converts TGA and BMP to PNG. Files of
 /// other types, which a model may also name, are never sent. Empty if the model has no texture
 /// coordinates.
@@ -29,7 +34,7 @@ Pictures pictures_of(const deform::Mesh& mesh);
 /// files.
 bool has_picture(const deform::Mesh& mesh, std::uint32_t texture) noexcept;
 
-/// Parses the number of a picture: up to six decimal digits.
+/// Parses the number of a picture: up to nine decimal digits.
 std::optional<std::size_t> picture_number(std::string_view text) noexcept;
 
 struct ModelFacts {

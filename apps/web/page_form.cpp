@@ -1,8 +1,8 @@
 #include "web/page_form.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include <nendo/base/number_in.hpp>
@@ -13,6 +13,7 @@ namespace {
 
 constexpr const char* look_names[] = {"", "chosen", "grey", "done"};
 constexpr const char* tone_names[] = {"", "faint", "warning", "success", "title"};
+constexpr std::chrono::milliseconds held_for(1200); ///< how long a number is changing
 
 } // namespace
 
@@ -20,6 +21,15 @@ void PageForm::begin(std::optional<FormInput> input) {
   parts_ = Json::array();
   same_.clear();
   input_ = std::move(input);
+  forget_drawings();
+}
+
+const commands::Row* PageForm::take_edit_command() {
+  if (!input_ || input_->pointer || !input_->value.empty()) return nullptr;
+  const auto* const row = commands::named(input_->control);
+  if (row == nullptr || !row->edit) return nullptr;
+  input_.reset();
+  return row;
 }
 
 void PageForm::part(std::string_view name) {
@@ -34,21 +44,6 @@ std::string PageForm::message(std::string_view screen) const {
   return whole.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// A picture that is as one before has its number, so that their list does not grow.
-std::size_t PageForm::number_of(const render::Image& picture) {
-  const auto [known, is_new] = numbers_.try_emplace(&picture);
-  if (!is_new) return known->second;
-  const auto png = render::png_of(picture);
-  const std::string contents = png ? *png : std::string();
-  const auto same =
-      std::ranges::find_if(pictures_, [&](const auto& one) { return *one == contents; });
-  known->second = static_cast<std::size_t>(same - pictures_.begin());
-  if (same != pictures_.end()) return known->second;
-  pictures_.push_back(std::make_shared<const std::string>(contents));
-  has_new_pictures_ = true;
-  return known->second;
-}
-
 PageForm::Json PageForm::control(const char* kind, std::string_view name, std::string_view help) {
   const int before = same_[std::string(name)]++;
   std::string id(name);
@@ -60,11 +55,17 @@ void PageForm::add(Json control) {
   parts_.back()["controls"].push_back(std::move(control));
 }
 
-std::optional<std::string> PageForm::changed(Json control) {
+std::optional<FormInput> PageForm::taken(Json control) {
   const bool is_meant = input_ && control["id"] == input_->control;
   add(std::move(control));
   if (!is_meant) return std::nullopt;
-  return std::exchange(input_, std::nullopt)->value;
+  return std::exchange(input_, std::nullopt);
+}
+
+std::optional<std::string> PageForm::changed(Json control) {
+  auto given = taken(std::move(control));
+  if (!given || given->pointer) return std::nullopt;
+  return std::move(given->value);
 }
 
 std::optional<std::size_t> PageForm::chosen_of(Json control, std::size_t count) {
@@ -216,8 +217,9 @@ bool PageForm::number(std::string_view name, std::string_view help, float& value
   const auto given = changed(std::move(one));
   const auto number = given ? to_finite_number(*given) : std::nullopt;
   if (!number) return false;
-  value = std::clamp(static_cast<float>(*number), min, max);
-  return true;
+  number_changed_ = HostClock::now(); // also by the same value, of a slider that is held
+  const float before = std::exchange(value, std::clamp(static_cast<float>(*number), min, max));
+  return value != before;
 }
 
 bool PageForm::line(std::string_view name, std::string& value) {
@@ -227,6 +229,10 @@ bool PageForm::line(std::string_view name, std::string& value) {
   if (!given) return false;
   value = *given;
   return true;
+}
+
+bool PageForm::is_changing() const {
+  return HostClock::now() - number_changed_ < held_for;
 }
 
 } // namespace nendo::web

@@ -144,7 +144,7 @@ void Server::set_figures(std::string_view json) {
   set_fact(figures_fact, text_message(MessageType::figures, json));
 }
 
-void Server::set_pictures(Pictures pictures) {
+void Server::set_pictures(FormPictures pictures) {
   const std::scoped_lock lock(work_->inbox.mutex);
   work_->inbox.pictures = std::move(pictures);
 }
@@ -214,7 +214,6 @@ void Server::Work::present(Presented next, std::vector<std::byte> model, bool is
       for (const std::size_t fact : {puppet_fact, run_form_fact, status_fact})
         inbox.facts[fact] = nullptr;
       inbox.inputs[static_cast<std::size_t>(FormKind::run)].clear();
-      inbox.pictures.reset(); // of the loop before
     }
   }
   wake();
@@ -301,7 +300,7 @@ void Server::Work::wait() {
 
 void Server::Work::take_presented() {
   std::optional<Presented> next, beside;
-  std::optional<Pictures> pictures;
+  std::optional<FormPictures> pictures;
   {
     const std::scoped_lock lock(inbox.mutex);
     next = std::exchange(inbox.next, std::nullopt);
@@ -310,9 +309,8 @@ void Server::Work::take_presented() {
   }
   if (next) loop_ = *std::move(next);
   if (beside) beside_ = *std::move(beside);
-  if (pictures) loop_.pictures = *pictures;
+  if (pictures) form_pictures_ = *std::move(pictures);
   const Presented& shown = beside_.stream ? beside_ : loop_;
-  if (pictures) presented_.pictures = shown.pictures;
   if (shown.loop == presented_.loop) return;
   if (presented_.stream) {
     presented_.stream->set_active(false);

@@ -108,8 +108,8 @@ public:
   void set_form(FormKind kind, std::string_view json);
   /// Sets the hands that clients show without a run (PROTOCOL.md, message 13).
   void set_figures(std::string_view json);
-  /// Replaces the pictures of the loop; present_beside() has its own.
-  void set_pictures(Pictures pictures);
+  /// Replaces the pictures of forms. Those of the loop, and beside it, stay.
+  void set_pictures(FormPictures pictures);
   /// Returns the next input of that form, of all clients in order of arrival.
   std::optional<FormInput> next_input(FormKind kind);
   /// A file that a client wants to open.

@@ -168,15 +168,21 @@ void Server::Work::take_file(Connection& connection, HostTime now) {
   connection.answer(answer_head(200, "text/plain; charset=utf-8", 0) + "\r\n", nullptr, now);
 }
 
+std::shared_ptr<const std::string> Server::Work::picture_of(std::size_t number) const {
+  if (number < presented_.pictures.size()) return presented_.pictures[number];
+  const auto found = form_pictures_.find(number);
+  return found != form_pictures_.end() ? found->second : nullptr;
+}
+
 void Server::Work::send_picture(Connection& connection, const HttpRequest& request, HostTime now) {
   const auto number = picture_number(request.parameter("number").value_or(""));
-  if (!number || *number >= presented_.pictures.size() || !presented_.pictures[*number]) {
-    refuse(connection, 404, "the model has no picture of that number", now);
+  const auto picture = number ? picture_of(*number) : nullptr;
+  if (!picture) {
+    refuse(connection, 404, "there is no picture of that number", now);
     return;
   }
-  const std::string& picture = *presented_.pictures[*number];
-  const std::string_view type = picture.starts_with("\x89PNG") ? "image/png" : "image/jpeg";
-  connection.answer(answer_head(200, type, picture.size()) + "\r\n", shared_bytes(picture), now);
+  const std::string_view type = picture->starts_with("\x89PNG") ? "image/png" : "image/jpeg";
+  connection.answer(answer_head(200, type, picture->size()) + "\r\n", shared_bytes(*picture), now);
 }
 
 void Server::Work::open_socket(Connection& connection, const HttpRequest& request,
@@ -219,13 +225,9 @@ void Server::Work::handle_input(Connection& connection, const std::string& text,
   const auto kind = static_cast<std::size_t>(input->form);
   if (!inbox.facts[form_fact + kind]) return;
   auto& inputs = inbox.inputs[kind];
-  // A slider sends values faster than forms take them, and only its last one counts.
-  const bool is_newer =
-      !inputs.empty() && !input->value.empty() && inputs.back().control == input->control;
-  if (is_newer)
-    inputs.back() = *std::move(input);
-  else if (inputs.size() < max_inputs)
-    inputs.push_back(*std::move(input));
+  // Sliders and the pointer send faster than forms take.
+  if (!inputs.empty() && inputs.back().take_in(*input)) return;
+  if (inputs.size() < max_inputs) inputs.push_back(*std::move(input));
 }
 
 void Server::Work::handle(Connection& connection, const std::string& text, HostTime now) {

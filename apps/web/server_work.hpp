@@ -68,7 +68,7 @@ public:
     HostTime next_marks{};        ///< the earliest time of the next message about clay or a wire
     Facts facts;                  ///< messages; null until they are set
     std::array<std::uint64_t, fact_count> versions{};     ///< the last versions of versioned facts
-    std::optional<Pictures> pictures;                     ///< set by set_pictures(), not taken yet
+    std::optional<FormPictures> pictures;                 ///< set by set_pictures(), not taken yet
     std::array<std::deque<FormInput>, form_kinds> inputs; ///< at most max_inputs each
     std::optional<File> file;
     std::vector<Weights> weights; ///< oldest first
@@ -89,6 +89,8 @@ private:
   void read_head(Connection& connection, HostTime now);
   void open_socket(Connection& connection, const HttpRequest& request, const Admission& admission,
                    HostTime now);
+  /// Returns a texture of the presented model, or a picture of a form; null: there is none.
+  std::shared_ptr<const std::string> picture_of(std::size_t number) const;
   void send_picture(Connection& connection, const HttpRequest& request, HostTime now);
   void read_socket(Connection& connection, HostTime now);
   void begin_file(Connection& connection, const HttpHead& head, HostTime now);
@@ -114,8 +116,9 @@ private:
 
   const ServerLimits limits_;
   UniqueFd listener_, waker_;
-  Presented loop_, beside_;           ///< beside_ has no stream if there is none
-  Presented presented_;               ///< the one of the two that clients get
+  Presented loop_, beside_; ///< beside_ has no stream if there is none
+  Presented presented_;     ///< the one of the two that clients get
+  FormPictures form_pictures_;
   std::list<Connection> connections_; ///< oldest first
   std::vector<pollfd> polled_;
   std::vector<Record> records_;

@@ -277,11 +277,12 @@ TEST_SUITE("commands") {
     const std::string panel = content_of("apps/web/page/panel.js");
     for (const Row& row : commands::table()) {
       CAPTURE(row.name);
-      const bool is_there = (row.places & commands::on_page) != 0;
+      const bool in_run = (row.places & commands::on_page) != 0;
+      const bool is_there = in_run || row.edit;
       const std::string name(row.name);
       CHECK((list.find("{ name: \"" + name + "\", ") != std::string::npos) == is_there);
       if (!row.is_for_run() && !row.name.starts_with("show ")) // which are all boxes
-        CHECK((panel.find("\n  '" + name + "': panel => ") != std::string::npos) == is_there);
+        CHECK((panel.find("\n  '" + name + "': panel => ") != std::string::npos) == in_run);
     }
     for (const std::string& name :
          attributes_in(content_of("apps/web/page/index.html"), "data-own")) {

@@ -19,11 +19,11 @@ namespace edit_session_test {
 using namespace nendo;
 using namespace nendo::edit;
 using namespace nendo::timeline;
-using viewer::EditActions;
-using viewer::EditCommand;
-using viewer::KeyDrag;
-using viewer::StripKey;
-using viewer::TipDrag;
+using forms::EditActions;
+using forms::EditCommand;
+using forms::KeyDrag;
+using forms::StripKey;
+using forms::TipDrag;
 
 namespace {
 
@@ -74,7 +74,7 @@ TEST_SUITE("edit_session") {
   TEST_CASE("pictures show the shapes of their times, and an edit replaces those that it changes") {
     Edited edited;
     edited.session.hurry_pictures(); // also while other tests run
-    std::vector<viewer::StripPicture> cells;
+    std::vector<forms::StripPicture> cells;
     for (double from_s = 0.0; from_s < edited.first.duration_s; from_s += 0.125)
       cells.push_back({from_s, std::min(from_s + 0.125, edited.first.duration_s)});
     EditActions asks;
@@ -109,7 +109,7 @@ TEST_SUITE("edit_session") {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       return found;
     };
-    const auto check_all = [&](const std::vector<viewer::StripPicture>& seen) {
+    const auto check_all = [&](const std::vector<forms::StripPicture>& seen) {
       const auto expected = played();
       REQUIRE(seen.size() == expected.size());
       for (std::size_t at = 0; at < seen.size(); ++at)

@@ -37,7 +37,7 @@ void check_head(std::string_view bytes) {
   const Admission admission = admit(head.request, "0123456789abcdef0123456789abcdef");
   require(admission.status == 200 || !admission.why.empty());
   const auto number = picture_number(head.request.parameter("number").value_or(""));
-  require(!number || *number <= 999'999);
+  require(!number || *number <= 999'999'999);
   const bool needs_token = admission.status == 200 && admission.resource != Resource::page;
   require(!needs_token || head.request.query.find("0123456789abcdef") != std::string_view::npos);
 }
@@ -75,8 +75,12 @@ void check_settings(const NamedSettings& named) {
 
 // Whatever is understood is something that a loop may be asked for.
 void check_words(std::string_view text) {
-  if (const auto input = parse_form_input(text))
+  if (const auto input = parse_form_input(text)) {
     require(!input->control.empty() && input->control.size() + input->value.size() < text.size());
+    if (const auto& pointer = input->pointer)
+      for (const double number : {pointer->x, pointer->y, pointer->panned, pointer->wheel})
+        require(std::abs(number) <= PointerInput::max_number);
+  }
   if (const auto name = file_name_in(text))
     require(!name->empty() && name->front() != '.' && name->find('/') == std::string::npos);
   const auto asked = parse_command(text);

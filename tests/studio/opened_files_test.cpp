@@ -31,6 +31,10 @@ TEST_SUITE("opened_files") {
     CHECK(*store_sent("Scan.OBJ", "") == "Scan-1.OBJ");
     CHECK(*store_sent("link.obj", "") == "link-1.obj");
     CHECK(*store_sent("loop.obj", "") == "loop-1.obj");
+    const std::string reserved = (folder.path() / "b.timeline.toml").string();
+    CHECK(*store_sent("b.timeline.toml", "", reserved) == "b-1.timeline.toml");
+    CHECK(*store_sent("b.timeline.toml", "", "b-2.timeline.toml") == "b.timeline.toml");
+    CHECK(*store_sent("b.timeline.toml", "", "b-2.timeline.toml") == "b-3.timeline.toml");
     CHECK(fs::is_symlink("link.obj"));
     for (const auto* wrong : {"program.sh", "obj", "a.toml", "a.obj.sh"}) {
       CAPTURE(wrong);

@@ -33,16 +33,13 @@ struct Seat : test::StudioSeat {
     REQUIRE(frames);
     tab.open(
         FirstTimeline{"wave.nendo", out, *std::move(frames), timeline::KeyRef{Side::right, 3}});
-    show = [this] {
-      tab.show();
-      REQUIRE(tab.is_open());
-    };
+    show = [this] { REQUIRE(tab.show()); };
     show();
   }
-  void edit(viewer::EditCommand command) {
-    viewer::EditActions actions;
+  void edit(forms::EditCommand command) {
+    forms::EditActions actions;
     actions.commands = {command};
-    tab.editing()->session().handle(actions);
+    tab.session()->handle(actions);
   }
 };
 
@@ -58,7 +55,7 @@ TEST_SUITE("timeline_tab" * doctest::skip(!test::restraint_is_counted)) {
     if (!screen.is_there()) return;
     Seat seat;
     CHECK(seat.tab.lets(Quit{}));
-    seat.edit(viewer::EditCommand::delete_key);
+    seat.edit(forms::EditCommand::delete_key);
     REQUIRE(seat.tab.is_modified());
     CHECK(seat.tab.lets(Go{Screen::start}));
     CHECK(seat.tab.lets(Open{"bust.obj"}));
@@ -69,7 +66,7 @@ TEST_SUITE("timeline_tab" * doctest::skip(!test::restraint_is_counted)) {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
     Seat seat;
-    seat.edit(viewer::EditCommand::delete_key);
+    seat.edit(forms::EditCommand::delete_key);
     REQUIRE_FALSE(seat.tab.lets(Open{"other.nendo"}));
     seat.show();
     seat.show();
@@ -85,8 +82,8 @@ TEST_SUITE("timeline_tab" * doctest::skip(!test::restraint_is_counted)) {
     CHECK(seat.tab.lets(Quit{})); // the answer holds for these edits
     CHECK_FALSE(std::filesystem::exists(seat.out));
 
-    seat.edit(viewer::EditCommand::undo);
-    seat.edit(viewer::EditCommand::mirror);
+    seat.edit(forms::EditCommand::undo);
+    seat.edit(forms::EditCommand::mirror);
     REQUIRE_FALSE(seat.tab.lets(Quit{})); // and not for others
     seat.show();
     seat.show();
@@ -95,7 +92,7 @@ TEST_SUITE("timeline_tab" * doctest::skip(!test::restraint_is_counted)) {
     CHECK_FALSE(seat.tab.is_modified());
     CHECK(std::filesystem::exists(seat.out));
 
-    seat.edit(viewer::EditCommand::mirror);
+    seat.edit(forms::EditCommand::mirror);
     std::filesystem::remove_all(seat.folder.path()); // so that nothing can be saved there
     REQUIRE_FALSE(seat.tab.lets(Quit{}));
     seat.show();
@@ -109,24 +106,27 @@ TEST_SUITE("timeline_tab" * doctest::skip(!test::restraint_is_counted)) {
     const test::MemoryScreen screen;
     if (!screen.is_there()) return;
     Seat seat;
-    seat.edit(viewer::EditCommand::delete_key);
+    seat.edit(forms::EditCommand::delete_key);
     viewer::SimulatedInput input;
     input.taps = {GLFW_KEY_Q};
     seat.window->simulate(input);
-    const Wish wish = seat.tab.show();
-    REQUIRE(quits(wish));
-    CHECK_FALSE(seat.tab.lets(wish));
+    const auto wish = seat.tab.show();
+    REQUIRE(wish);
+    REQUIRE(quits(*wish));
+    CHECK_FALSE(seat.tab.lets(*wish));
     seat.window->simulate({});
     seat.show();
     seat.show();
-    const std::uint64_t revision = seat.tab.editing()->session().history().revision();
+    const std::uint64_t revision = seat.tab.session()->history().revision();
     seat.key(GLFW_KEY_Y, false, true); // the question comes first
-    CHECK(seat.tab.editing()->session().history().revision() == revision);
+    CHECK(seat.tab.session()->history().revision() == revision);
     seat.key(GLFW_KEY_ESCAPE); // stays
     CHECK_FALSE(is_wish(seat.tab.take_settled()));
-    CHECK_FALSE(is_wish(seat.tab.show()));
+    const auto next = seat.tab.show();
+    REQUIRE(next);
+    CHECK_FALSE(is_wish(*next));
     seat.key(GLFW_KEY_Y, false, true);
-    CHECK(seat.tab.editing()->session().history().revision() != revision);
+    CHECK(seat.tab.session()->history().revision() != revision);
   }
 }
 

@@ -31,6 +31,7 @@ template <class Point>
 void check_tooltips(const Point& point) {
   const std::vector<viewer::Control> all(viewer::controls().begin(), viewer::controls().end());
   for (const viewer::Control& control : all) {
+    if (control.name == "dope sheet") continue; // it explains its keys and marks
     CAPTURE(control.name);
     point(((control.min + control.max) / 2.0F).cast<double>());
     CHECK(viewer::tooltip().size() > 10);

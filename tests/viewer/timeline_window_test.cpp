@@ -19,6 +19,7 @@ namespace timeline_window_test {
 using namespace nendo;
 using namespace nendo::render;
 using namespace nendo::viewer;
+using namespace nendo::forms;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -54,10 +55,10 @@ struct Seat {
     show();
   }
   EditActions show() { return window->show(view, scene_frame); }
-  /// The strip is 6 pixels from the window's edges, below 36 of controls, on a screen of scale 1.
   Vector2d on_strip(double time_s, double y) const {
-    return {scale * (6.0 + strip.x_of(time_s)),
-            window->scene_window().scene_size().height + scale * (6.0 + 36.0 + y)};
+    const auto sheet = std::ranges::find(controls(), "dope sheet", &Control::name);
+    REQUIRE(sheet != controls().end());
+    return sheet->min.cast<double>() + scale * Vector2d(strip.x_of(time_s), y);
   }
   Vector2d on_key(std::size_t lane, std::size_t key) const {
     return on_strip(view.lanes[lane].keys_s[key], DopeSheet::middle_of(lane));

@@ -309,6 +309,61 @@ TEST_SUITE("client_commands") {
       CHECK_FALSE(parse_form_input(wrong));
     }
   }
+
+  TEST_CASE("the input of a drawing is an event of the pointer, with five finite numbers") {
+    using Event = PointerInput::Event;
+    const auto wheel = parse_form_input("form\tkeys\tmove\t12.5 -3 0 -2 1");
+    REQUIRE(wheel);
+    REQUIRE(wheel->pointer);
+    CHECK(wheel->control == "keys");
+    CHECK(wheel->value.empty());
+    CHECK(wheel->pointer->event == Event::move);
+    CHECK(wheel->pointer->x == 12.5);
+    CHECK(wheel->pointer->y == -3.0);
+    CHECK(wheel->pointer->panned == 0.0);
+    CHECK(wheel->pointer->wheel == -2.0);
+    CHECK(wheel->pointer->has_control);
+    const auto far = parse_form_input("panel\tkeys\tdrag\t1e300 -1e300 0 0 0");
+    REQUIRE(far);
+    REQUIRE(far->pointer);
+    CHECK(far->form == FormKind::run);
+    CHECK(far->pointer->x == PointerInput::max_number);
+    CHECK(far->pointer->y == -PointerInput::max_number);
+    CHECK_FALSE(parse_form_input("form\tname\tmove")->pointer); // a text that is typed
+    for (const std::string numbers : {"", "1 2 3 4", "1 2 3 4 5 6", "nan 0 0 0 0", "0 inf 0 0 0",
+                                      "0 0 x 0 0", "0  0 0 0 0", "0 0 0 0 0 ", "0 0 0 0 0\t"}) {
+      CAPTURE(numbers);
+      CHECK_FALSE(parse_form_input("form\tkeys\tmove\t" + numbers));
+      CHECK_FALSE(parse_form_input("form\tkeys\tjump\t0 0 0 0 0"));
+      CHECK_FALSE(parse_form_input("form\t\tmove\t0 0 0 0 0"));
+    }
+  }
+
+  TEST_CASE("an input takes in the next one if both have the effect of one") {
+    using Event = PointerInput::Event;
+    const auto event = [](Event kind, double x = 0.0, const char* control = "keys") {
+      return FormInput{control, "", FormKind::screen, PointerInput{kind, x, 0.0, 2.0, 1.0}};
+    };
+    FormInput moved = event(Event::move, 1.0);
+    CHECK(moved.take_in(event(Event::move, 3.0)));
+    CHECK(moved.pointer->x == 3.0);
+    CHECK(moved.pointer->panned == 4.0);
+    CHECK(moved.pointer->wheel == 2.0);
+    for (int many = 0; many < 100'000; ++many)
+      moved.take_in(event(Event::move));
+    CHECK(moved.pointer->panned == PointerInput::max_number);
+    for (const Event kind : {Event::down, Event::drag, Event::up, Event::size, Event::leave})
+      CHECK_FALSE(moved.take_in(event(kind)));
+    CHECK_FALSE(moved.take_in(event(Event::move, 3.0, "curve")));
+    CHECK_FALSE(moved.take_in(FormInput{"keys", "12"}));
+    FormInput pressed = event(Event::down), slid{"speed", "1"}, button{"Play", ""};
+    CHECK_FALSE(pressed.take_in(event(Event::down)));
+    CHECK_FALSE(pressed.take_in(FormInput{"keys", ""}));
+    CHECK(slid.take_in(FormInput{"speed", "2"}));
+    CHECK(slid.value == "2");
+    CHECK_FALSE(slid.take_in(FormInput{"speed", "3", FormKind::run}));
+    CHECK_FALSE(button.take_in(FormInput{"Play", ""}));
+  }
 }
 
 } // namespace client_commands_test

@@ -494,7 +494,7 @@ TEST_SUITE("run_web") {
     Studio studio(folder.path());
     REQUIRE(studio.sees("With this model"));
     CHECK(studio.send("sent.nendo", bytes) == 200);
-    REQUIRE(studio.sees("The play head."));
+    REQUIRE(studio.sees("Where the play head is"));
     CHECK(studio.send("program.sh", "rm") == 200);
     REQUIRE(studio.sees("program.sh: the studio opens"));
     CHECK(fs::exists(folder.path() / "sent.nendo"));

@@ -80,11 +80,11 @@ TEST_SUITE("server") {
     server->present_nothing();
     WebClient client(*server);
     REQUIRE(client.open_socket() == 101);
-    client.send_text("panel\tbefore\t"); // there is no panel yet
     server->set_form(FormKind::screen, "{}");
-    REQUIRE(client.next());
+    client.send_text("panel\tbefore\t"); // there is no panel yet
+    client.send_text("form\tStart\t");
+    REQUIRE(eventually([&] { return server->next_input(FormKind::screen).has_value(); }));
     server->set_form(FormKind::run, "{}");
-    REQUIRE(client.next());
     client.send_text("panel\tradius\t12");
     client.send_text("form\tPull\t");
     std::optional<web::FormInput> of_screen;
@@ -317,6 +317,46 @@ TEST_SUITE("server") {
           std::vector<std::string>{"time199", "Play", "Play", "timeend"});
   }
 
+  TEST_CASE("moves of the pointer become one, and its presses and releases stay in their order") {
+    using Event = web::PointerInput::Event;
+    const auto server = open_server();
+    server->present_nothing();
+    server->set_form(web::FormKind::screen, "{}");
+    WebClient client(*server);
+    REQUIRE(client.open_socket() == 101);
+    const auto send = [&](const std::string& event, int many = 1) {
+      for (int x = 1; x <= many; ++x)
+        client.send_text("form\tkeys\t" + event + '\t' + std::to_string(x) + " 2 0.5 1 0");
+    };
+    send("move", 50);
+    send("down");
+    send("drag", 50);
+    send("up");
+    send("down");
+    send("up");
+    send("leave");
+    std::vector<web::PointerInput> given;
+    REQUIRE(eventually([&] {
+      while (const auto input = server->next_input(web::FormKind::screen)) {
+        REQUIRE(input->pointer);
+        given.push_back(*input->pointer);
+      }
+      return !given.empty() && given.back().event == Event::leave;
+    }));
+    std::vector<Event> presses;
+    double panned = 0.0, wheel = 0.0, last_drag = 0.0;
+    for (const web::PointerInput& one : given) {
+      if (one.event != Event::move && one.event != Event::drag) presses.push_back(one.event);
+      if (one.event == Event::drag) last_drag = one.x;
+      panned += one.panned;
+      wheel += one.wheel;
+    }
+    CHECK(presses == std::vector{Event::down, Event::up, Event::down, Event::up, Event::leave});
+    CHECK(last_drag == 50.0);
+    CHECK(panned == 0.5 * 105);
+    CHECK(wheel == 105.0);
+  }
+
   TEST_CASE("clients of a run get nothing about the puppet of the run before") {
     const auto server = open_server();
     const auto puppet_message = [&] {
@@ -340,24 +380,29 @@ TEST_SUITE("server") {
     CHECK(puppet_message().size() == 8 + 4);
   }
 
-  TEST_CASE("pictures are of the loop, also if they come while something is shown beside it") {
+  TEST_CASE("the pictures of forms are there whatever is presented, until others replace them") {
     const auto server = open_server();
-    const auto status = [&] {
+    const auto picture = std::make_shared<const std::string>("\x89PNG");
+    const auto status = [&](std::size_t number) {
       WebClient client(*server);
-      return client.get(client.with_token("/picture") + "&number=0").status;
+      return client.get(client.with_token("/picture") + "&number=" + std::to_string(number)).status;
     };
     const deform::Mesh nothing;
     const deform::BlockLayout layout(nothing.vertices);
     server->present_nothing();
     server->present_beside(std::make_shared<FrameStream>(layout, flow::FrameCapacity{}),
-                           model_message(layout, nothing, {}, {}), {});
-    server->set_pictures({std::make_shared<const std::string>("\x89PNG")});
-    CHECK(status() == 404);
+                           model_message(layout, nothing, {}, {}), {picture});
+    server->set_pictures({{first_form_picture, picture}});
+    CHECK(status(0) == 200);
+    CHECK(status(first_form_picture) == 200);
     server->end_beside();
-    CHECK(status() == 200);
-    server->set_pictures({std::make_shared<const std::string>("\x89PNG")});
+    CHECK(status(0) == 404);
+    CHECK(status(first_form_picture) == 200);
+    server->set_pictures({{first_form_picture + 1, picture}});
     server->present_nothing();
-    CHECK(status() == 404);
+    CHECK(status(first_form_picture) == 404);
+    CHECK(status(first_form_picture + 1) == 200);
+    CHECK(status(2'000'000'000) == 404);
   }
 
   TEST_CASE("clients follow what is shown beside the loop, and then the loop again") {

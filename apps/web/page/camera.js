@@ -29,10 +29,7 @@ class Camera {
     canvas.addEventListener('contextmenu', event => event.preventDefault())
   }
 
-  change(values) {
-    Object.assign(this, values)
-    this.changed()
-  }
+  change(values) { Object.assign(this, values); this.changed() }
   reset() { this.change(this.home) }
   // The first view: all of a box.
   see({ low, high }) {

@@ -2,6 +2,8 @@
 // (functions, kernel, has a polynomial, share of clay and 2 more if it is halfway), three of the
 // polynomial's rows if it has one, and two a function (centre and 1 / radius; coefficient). A field
 // that is halfway says where the next is asked. Normals turn by the cofactors of the Jacobian.
+layout(location = 0) in vec3 base_place;
+layout(location = 1) in vec3 base_normal;
 uniform highp sampler2D fields; // 256 texels wide
 uniform int field_count;
 

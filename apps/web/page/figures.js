@@ -8,11 +8,7 @@ function figuresOf({ hands, marks }, scene) {
       const slot = side === 'left' ? 0 : 1, skin = scene.skinOf(slot, many[slot]++)
       return { skin, bones: bonesFor(skin, joints), joints, look: LOOKS[look], isShade: look !== 'live' }
     }),
-    marks: marks.map(({ from, to, radius, colour }) => {
-      const capsules = new Capsules()
-      capsules.add(from, to, radius, radius)
-      return { capsules, material: { ...BONE, colour } }
-    }),
+    marks: marks.map(({ from, to, radius, colour }) => ({ capsules: new Capsules().add(from, to, radius, radius), material: { ...BONE, colour } })),
   }
 }
 

@@ -27,13 +27,13 @@ function listen(control, give) {
 }
 
 class Form {
-  // fetchPicture: as Paint takes it.
-  constructor(panel, fetchPicture) {
-    Object.assign(this, { panel, fetchPicture, parts: new Map(), pictures: new Map(), canvases: new Map() })
-    document.addEventListener('dragover', event => event.preventDefault())
-    document.addEventListener('drop', event => {
+  // fetchImage: as Paint takes it.
+  constructor(panel, fetchImage) {
+    Object.assign(this, { panel, fetchImage, parts: new Map(), pictures: new Map() })
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.showAgain())
+    for (const name of ['dragover', 'drop']) document.addEventListener(name, event => {
       event.preventDefault()
-      this.open(event.dataTransfer.files[0])
+      this.open(event.dataTransfer.files[0]) // there is none until it is dropped
     })
   }
   // kind: 0 is a screen's form, 1 the run's panel, 2 its status bar. Parts of other kinds stay.
@@ -41,6 +41,8 @@ class Form {
     if (kind === 0) document.body.dataset.screen = screen
     for (const [name, part] of this.parts) if (part.kind === kind) part.section.hidden = !parts.some(one => one.name === name)
     for (const { name, controls } of parts) this.fill(this.partNamed(name, kind), controls)
+    const shown = new Set(this.all().flatMap(({ wanted: { picture, shapes = [] } }) => [picture, ...shapes.map(([, what]) => what)]))
+    for (const number of this.pictures.keys()) if (!shown.has(number)) this.pictures.delete(number)
   }
   partNamed(name, kind) {
     const id = 'form-' + name, place = () => element(id) || make('section', document.body, { id, className: 'form controls' })
@@ -72,7 +74,7 @@ class Form {
   follow(made, wanted) {
     const text = JSON.stringify(wanted), { control } = made, { id, kind, name, help, look, share } = wanted
     if (made.text === text) return
-    const isOlder = made.timer && !isSame(made.given, wanted)
+    const isOlder = made.timer && !isSame(made.given, wanted), hasOtherHelp = made.wanted?.help !== help
     Object.assign(made, { text, wanted })
     control.className = [made.base, look, share === 0 ? 'flows' : ''].join(' ')
     control.dataset.control = name
@@ -80,9 +82,11 @@ class Form {
     if (id) control.setAttribute('aria-disabled', look === 'grey')
     if (share) control.style.setProperty('--share', share)
     explain(made.head || control, help)
+    if (hasOtherHelp && control.contains(tips.over)) tips.show(tips.over)
     if (!isOlder) this.settle(made)
   }
   settle(made) {
+    if (made.timer && made.wanted.kind === 'number' && made.control.matches(':active')) return this.change(made, made.given) // it is held
     clearTimeout(made.timer)
     made.timer = 0
     made.show(made.wanted)
@@ -99,9 +103,12 @@ class Form {
     made.show({ ...made.wanted, value: given })
   }
   all() { return [...this.parts.values()].flatMap(({ shown }) => [...shown.values()]) }
-  // Boxes of the page's own state.
-  showOwn() { for (const made of this.all()) if (made.wanted.value === null) made.show(made.wanted) }
-  drawCharts(hands) { for (const [id, canvas] of this.canvases) if (canvas.clientWidth > 0) CHARTS[id].draw(canvas, hands) }
+  // When the page's own state, a picture or the colours have changed.
+  showAgain() { for (const made of this.all()) if (!made.timer) made.show(made.wanted) }
+  drawCharts(hands) {
+    for (const { control, chart } of this.all())
+      if (chart && control.clientWidth > 0) draw(control, chart.shapes(control.clientWidth, control.clientHeight, hands))
+  }
 
   section(_, { open }) {
     const control = create('details', { open }), head = make('summary', control), inside = make('div', control, { className: 'controls' })
@@ -127,10 +134,7 @@ class Form {
     return shows(control, ({ value }) => control.style.setProperty('--part', value + '%'), 'ring')
   }
   separator() { return shows(create('hr'), () => {}) }
-  chart(_, { id }) {
-    this.canvases.set(id, create('canvas'))
-    return shows(this.canvases.get(id), () => {}, 'chart')
-  }
+  chart(_, { id }) { return { ...shows(create('canvas'), () => {}, 'chart'), chart: CHARTS[id] } }
   bars(_, wanted) { return this.chart(_, wanted) }
   command(give) { return this.button(give, {}) }
   button(give, { picture }) {
@@ -139,15 +143,25 @@ class Form {
     control.addEventListener('click', () => give(''))
     return shows(control, ({ name, picture }) => {
       setText(words, name)
-      if (canvas && picture !== null) this.paint(canvas, picture)
+      const image = canvas && picture !== null && this.imageOf(picture)
+      if (image) canvas.getContext('2d').drawImage(image, 0, 0, canvas.width, canvas.height)
     }, canvas ? 'card' : '')
   }
-  async paint(canvas, number) {
-    if (!this.pictures.has(number)) this.pictures.set(number, this.fetchPicture(number).then(blob => blob && createImageBitmap(blob)))
-    const image = await this.pictures.get(number)
-    if (image) return canvas.getContext('2d').drawImage(image, 0, 0, canvas.width, canvas.height)
-    this.pictures.delete(number) // the message was faster
-    setTimeout(() => this.paint(canvas, number), 200)
+  drawing(give, { listens }) {
+    const drawing = new Drawing(give, number => this.imageOf(number), listens)
+    return shows(drawing.canvas, wanted => drawing.show(wanted), 'drawing')
+  }
+  // The bitmap of a picture; null: it is not there yet, and all is shown again when it is.
+  imageOf(number) {
+    if (!this.pictures.has(number)) this.load(number)
+    return this.pictures.get(number)
+  }
+  async load(number) {
+    this.pictures.set(number, null)
+    const image = await this.fetchImage(number)
+    if (!image) return this.pictures.delete(number) // what is shown next asks again
+    this.pictures.set(number, image)
+    this.showAgain()
   }
   check(give) {
     const input = create('input', { type: 'checkbox' })

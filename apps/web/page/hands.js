@@ -2,7 +2,7 @@
 // Eight numbers a capsule: from and its radius, to and its radius.
 class Capsules {
   constructor() { this.numbers = [] }
-  add(from, to, fromRadius, toRadius) { this.numbers.push(...from, fromRadius, ...to, toRadius) }
+  add(from, to, fromRadius, toRadius) { this.numbers.push(...from, fromRadius, ...to, toRadius); return this }
   get count() { return this.numbers.length / 8 }
 }
 
@@ -33,10 +33,8 @@ class Holds {
   // Of another loop.
   begin() { Object.assign(this, { starts: [null, null], before: null }) }
   follow(update) {
-    const before = this.before
-    const begins = update.held &&
-      (!before || !before.held || update.restChanges !== before.restChanges || update.jumps !== before.jumps)
-    if (begins) this.starts = update.hands.map(hand => hand && TIPS.map(tip => hand.joints[tip].place))
+    const { before } = this, isNew = !before?.held || update.restChanges !== before.restChanges || update.jumps !== before.jumps
+    if (update.held && isNew) this.starts = update.hands.map(hand => hand && TIPS.map(tip => hand.joints[tip].place))
     this.before = update
   }
 }

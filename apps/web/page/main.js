@@ -3,20 +3,20 @@ const token = location.hash.slice(1)
 const holds = new Holds()
 let socket = null, latest = null, patience = 500, dirty = true, scene = null, trouble = '', seen = '', sentAt = 0
 const due = new Map() // requests that wait for the next picture, by their controls
+const arrived = new Map() // forms that are shown with the next picture, the newest of each kind
 const SERVICE_RESTART = 1012
 const BETWEEN_SENDS = 15 // ms, because the server closes a client that sends more than 128 messages per second
-const counts = { updates: 0, updateBytes: 0, shapes: 0, weights: 0, bakes: 0, draws: 0 }
 
 const shown = { hands: true, bones: false, vectors: true, radii: false, contact: false, facets: false }
 const run = { settings: { radius_m: [] }, puppet: null, contacts: [], wire: [] } // as the server has described it
-const panel = new Panel(ask, shown, fetchPicture), { form } = panel
+const panel = new Panel(ask, shown, fetchImage), { form } = panel
 try {
   scene = new Scene(element('scene'), shown, run)
 } catch (error) {
   trouble = `No picture: ${error.message}. Figures and buttons work all the same.`
   panel.say(trouble)
 }
-new Tips()
+const tips = new Tips()
 const camera = new Camera(element('scene'), () => { dirty = true })
 panel.camera = camera
 const mover = new HandMover(element('scene'), camera, () => scene && scene.shape && latest &&
@@ -40,8 +40,7 @@ function sendAll() {
 const isOpen = () => socket !== null && socket.readyState === WebSocket.OPEN
 
 function again(why) {
-  panel.connected(false)
-  panel.say(`${why} Trying again.`)
+  panel.connected(false, `${why} Trying again.`)
   setTimeout(connect, patience)
   patience = Math.min(5000, 1.6 * patience)
 }
@@ -50,10 +49,7 @@ async function connect() {
   let model
   try {
     const answer = await fetch('/model?token=' + token)
-    if (answer.status === 403) {
-      panel.say('This address has no token, or an old one: open the whole address that nendo printed.')
-      return
-    }
+    if (answer.status === 403) return panel.say('This address has no token, or an old one: open the whole address that nendo printed.')
     if (!answer.ok) return again((await answer.text()).trim() + '.')
     model = readModel(await answer.arrayBuffer())
   } catch (error) {
@@ -61,10 +57,9 @@ async function connect() {
   }
   if (panel.model && panel.model.name !== model.name) [latest, seen] = [null, ''] // the picture shows all of it
   panel.setModel(model)
-  form.pictures.clear()
   holds.begin()
   if (scene) {
-    scene.setModel(model, fetchPicture, () => { dirty = true })
+    scene.setModel(model, fetchImage, () => { dirty = true })
     if (!scene.skins) fetchSkin()
   }
   open(model)
@@ -76,10 +71,11 @@ async function fetchSkin() {
   dirty = true
 }
 
-async function fetchPicture(number) {
+// Null: there is none, or it is damaged. What is transparent becomes black.
+async function fetchImage(number) {
   try {
     const answer = await fetch(`/picture?token=${token}&number=${number}`)
-    return answer.ok ? await answer.blob() : null
+    return answer.ok ? await createImageBitmap(await answer.blob(), { premultiplyAlpha: 'premultiply', colorSpaceConversion: 'none' }) : null
   } catch (error) {
     return null
   }
@@ -90,8 +86,7 @@ function open(model) {
   socket = new WebSocket(`ws://${location.host}/ws?token=${token}`)
   socket.binaryType = 'arraybuffer'
   socket.onopen = () => {
-    panel.connected(true)
-    panel.say(trouble)
+    panel.connected(true, trouble)
     patience = 500
   }
   socket.onmessage = ({ data }) => {
@@ -101,12 +96,12 @@ function open(model) {
     else if (type === 2) takeUpdate(readUpdate(data, model), model)
     else if (type === 3) panel.report(textIn(data), more === 1)
     else if (type === 4) run.settings = readSettings(data)
-    else if (type === 6) takeWeights(readWeights(data), model)
+    else if (type === 6) scene?.shape.takeWeights(readWeights(data))
     else if (type === 7) takePuppet(readPuppet(data), model)
     else if (type === 8) run.contacts = readContacts(data)
     else if (type === 9) panel.refusals = readRefusals(data)
     else if (type === 11) run.wire = readWire(data)
-    else if (type === 12) form.take(more, JSON.parse(textIn(data)))
+    else if (type === 12) arrived.set(more, data)
     else if (type === 13) takeFigures(JSON.parse(textIn(data)))
     if (stale) socket.close()
     dirty = true
@@ -134,20 +129,12 @@ function takePuppet(puppet, model) {
   if (scene) scene.shape.setHeld(heldBy(puppet, model))
 }
 
-function takeWeights(weights, model) {
-  counts.weights += 1
-  if (scene && weights.counts.length === model.vertices) scene.shape.takeWeights(weights)
-}
-
 function takeShape(shape, model) {
-  counts.shapes += 1
   if (shape.loop === model.loop && scene) scene.shape.takeShape(shape)
   return shape.loop === model.loop
 }
 
 function takeUpdate(update, { rate }) {
-  counts.updates += 1
-  counts.updateBytes += update.bytes
   if (!latest && scene) camera.see(scene.boxWith(update.hands))
   latest = update
   holds.follow(update)
@@ -155,10 +142,7 @@ function takeUpdate(update, { rate }) {
   CHARTS.uneven.add(Math.abs(update.sinceLast / 1000 - 1000 / rate))
   setText(element('unseen'), update.unseen > 0 ? `${update.unseen} frames not shown` : '')
   if (!scene || scene.shape.number === null) return
-  for (const step of update.steps) {
-    scene.shape.takeStep(step)
-    counts[step.bakes ? 'bakes' : 'draws'] += step.count
-  }
+  for (const step of update.steps) scene.shape.takeStep(step)
   scene.shape.number = update.number
 }
 
@@ -167,29 +151,21 @@ function picture() {
   if (due.size > 0 && performance.now() - sentAt >= BETWEEN_SENDS) sendAll()
   if (!dirty) return
   dirty = false
+  for (const [kind, data] of arrived) form.take(kind, JSON.parse(textIn(data)))
+  arrived.clear()
   const begin = performance.now()
-  if (scene) scene.draw(camera, latest, holds, panel.covered())
+  camera.covered = panel.covered()
+  if (scene) scene.draw(camera, latest, holds)
   CHARTS.picture.add(performance.now() - begin)
   if (latest) form.drawCharts(latest.hands)
 }
 
 addEventListener('resize', () => { dirty = true })
 addEventListener('hashchange', () => location.reload())
-element('scene').addEventListener('webglcontextlost', event => {
-  event.preventDefault()
+element('scene').addEventListener('webglcontextlost', () => {
   trouble = 'The graphics card has been taken away.'
   scene = null
   panel.say(trouble + ' Reload the page.')
 })
-// For tests of this page, and experiments with it.
-window.nendo = {
-  ask, counts,
-  control: id => form.all().map(({ wanted }) => wanted).find(wanted => wanted.id === id), // as the server describes it
-  vertices: () => Array.from(scene.shape.vertices()),
-  state: () => latest && { number: Number(latest.number), held: latest.held, restChanges: latest.restChanges, jumps: latest.jumps,
-    ticks: latest.ticks, loop: panel.model.loop, ...run,
-    wrists: latest.hands.map(hand => hand && { ...hand.joints[1], turn: hand.forearm, pixel: scene && scene.pixelOf(hand.joints[1].place) }),
-    open: isOpen(), shape: Boolean(scene) && scene.shape.number !== null },
-}
 connect()
 picture()

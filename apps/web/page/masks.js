@@ -57,9 +57,8 @@ const restOf = ({ origin, unit, places }, at) => [0, 1, 2].map(axis => origin[ax
 // Of each vertex, how much it is held, 0 to 255. The shares of the masks remain with the model, so that a mask that is added
 // takes one pass over the vertices.
 function heldBy({ masks, isInverted }, model) {
-  const isSame = (mask, other) => other && mask.radius === other.radius && mask.at.every((part, axis) => part === other.at[axis])
-  if (!model.held || !model.held.masks.every((mask, at) => isSame(mask, masks[at])))
-    model.held = { masks: [], shares: new Float32Array(model.vertices) }
+  const isSame = (mask, at) => `${mask.at} ${mask.radius}` === `${masks[at]?.at} ${masks[at]?.radius}`
+  if (!model.held?.masks.every(isSame)) model.held = { masks: [], shares: new Float32Array(model.vertices) }
   for (const mask of masks.slice(model.held.masks.length)) hold(model, mask, model.held.shares)
   model.held.masks = masks
   return Uint8Array.from(model.held.shares, share => Math.round(255 * (isInverted ? 1 - share : share)))

@@ -1,6 +1,4 @@
 // The model as it is now: the base, deformed by what the hands do to it.
-layout(location = 0) in vec3 base_place;
-layout(location = 1) in vec3 base_normal;
 layout(location = 2) in vec2 given_texcoord;
 layout(location = 3) in vec3 given_tint;
 layout(location = 4) in float held; // by masks, which are dark

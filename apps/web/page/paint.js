@@ -3,32 +3,22 @@ const MAX_PIXELS = 1 << 27 // of all pictures; a small file can be a large pictu
 const WHITE = [1, 1, 1]
 
 class Paint {
-  // fetchPicture: of a number, a promise of its file, or of null.
-  constructor(gl, { coats, colours }, fetchPicture, changed) {
+  // fetchImage: of a picture's number, a promise of its bitmap, or of null.
+  constructor(gl, { coats, colours }, fetchImage, changed) {
     Object.assign(this, { gl, coats, isTinted: colours !== null, pictures: new Map(), over: false })
-    this.load(fetchPicture, changed)
+    this.load(fetchImage, changed)
   }
 
-  async load(fetchPicture, changed) {
+  async load(fetchImage, changed) {
     const numbers = new Set(this.coats.map(({ texture }) => texture).filter(texture => texture !== null))
-    let left = MAX_PIXELS
+    let left = MAX_PIXELS, most = this.gl.getParameter(this.gl.MAX_TEXTURE_SIZE)
     for (const number of numbers) {
-      const image = await this.decoded(await fetchPicture(number))
+      const image = await fetchImage(number)
       if (this.over) return
-      if (!image || image.width * image.height > left) continue
+      if (!image || Math.max(image.width, image.height) > most || image.width * image.height > left) continue
       left -= image.width * image.height
       this.pictures.set(number, this.textureOf(image))
       changed()
-    }
-  }
-  // What is transparent becomes black. Null: it is damaged, or too large for the card.
-  async decoded(file) {
-    const most = this.gl.getParameter(this.gl.MAX_TEXTURE_SIZE)
-    try {
-      const image = file && await createImageBitmap(file, { premultiplyAlpha: 'premultiply', colorSpaceConversion: 'none' })
-      return image && Math.max(image.width, image.height) <= most ? image : null
-    } catch (error) {
-      return null
     }
   }
   textureOf(image) {

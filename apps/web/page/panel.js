@@ -15,13 +15,16 @@ const OWN = {
 }
 const MESSAGE_LASTS = 8000 // ms
 const HINTS_CLOSED = 'nendo-hints=closed' // a cookie: it is that of all ports of this machine
+const KEY_NAMES = { ' ': 'Space', Escape: 'Esc' }
+const FIELD_KEYS = { 'select-one': /./, number: /./, text: /./, range: /^(Arrow|Home|End)/, checkbox: /^ $/ } // by their types
+const commandsHere = () => COMMANDS.filter(({ inRun, inTimeline }) => document.body.dataset.screen === 'timeline' ? inTimeline : inRun)
 const commandNamed = wanted => COMMANDS.find(({ name }) => name === wanted)
 
 class Panel {
-  // shown: the parts of the picture, by their names. fetchPicture: as Paint takes it.
-  constructor(ask, shown, fetchPicture) {
+  // shown: the parts of the picture, by their names. fetchImage: as Paint takes it.
+  constructor(ask, shown, fetchImage) {
     Object.assign(this, { ask, shown, camera: null, painter: null, model: null, refusals: new Map() })
-    this.form = new Form(this, fetchPicture)
+    this.form = new Form(this, fetchImage)
     for (const button of document.querySelectorAll('button[data-own]')) {
       const command = commandNamed(button.dataset.own)
       explain(button, `${command.help} (${command.keys.join(', ')})`)
@@ -34,37 +37,31 @@ class Panel {
     this.hint()
   }
 
-  give(command) {
-    const { name, isForRun } = command, part = name.replace('show ', '')
-    if (isForRun) return this.giveToRun(name)
+  give({ name, isForRun, isEdit }) {
+    if (isForRun || isEdit) {
+      const refusal = this.refusals.get(name) || '' // the server says it in advance
+      this.report(refusal, true)
+      if (!refusal) this.ask(isEdit ? `form\t${name}\t` : name)
+      return
+    }
+    const part = name.replace('show ', '')
     if (part in this.shown) this.shown[part] = !this.shown[part]
     else OWN[name](this)
-    this.form.showOwn()
+    this.form.showAgain()
     this.camera.changed()
-  }
-  // The server says in advance which commands are not possible.
-  giveToRun(name) {
-    const refusal = this.refusals.get(name) || ''
-    this.report(refusal, true)
-    if (!refusal) this.ask(name)
   }
   isOn(name) { return name === 'paint masks' ? this.painter.isOn : this.shown[name.replace('show ', '')] }
   press(event) {
-    if (event.altKey || event.metaKey || element('search').open) return
-    if (event.target.matches('select, input[type=number], input[type=text]')) return // which have keys of their own
-    if (event.ctrlKey) return this.pressWithCtrl(event)
-    if (event.repeat) return
-    if (event.key === 'Home' && event.target.matches('input[type=range]')) return
-    const command = COMMANDS.find(({ keys }) => keys.includes(event.key))
-    if (!command) return
-    if (event.key.length > 1 || !command.isForRun) event.preventDefault() // the browser's own F3, and a letter in the search
-    this.give(command)
-  }
-  pressWithCtrl(event) {
-    const key = event.key.toUpperCase(), view = VIEWS[key]
-    const command = COMMANDS.find(({ keys }) => keys.includes(`Ctrl ${event.shiftKey ? 'Shift ' : ''}${key}`))
+    const { key, ctrlKey, shiftKey, repeat, timeStamp } = event
+    if (event.altKey || event.metaKey || element('search').open || FIELD_KEYS[event.target.type]?.test(key)) return
+    if (key === ' ' && event.target.matches(':is(button, summary):focus-visible')) return // which it presses
+    const name = KEY_NAMES[key] || key.replace('Arrow', ''), view = ctrlKey && VIEWS[key]
+    const wanted = ctrlKey ? `Ctrl ${shiftKey ? 'Shift ' : ''}${name.length > 1 ? name : name.toUpperCase()}` : name
+    const command = commandsHere().find(({ keys }) => keys.includes(wanted))
     if (!command && !view) return
-    event.preventDefault()
+    if (ctrlKey || key.length > 1 || !command.isForRun) event.preventDefault() // the browser's own F3, and a letter in the search
+    if (repeat && !(command?.repeats && timeStamp > this.pressedAt + BETWEEN_INPUTS)) return
+    this.pressedAt = timeStamp
     if (view) this.camera.look(...opposite(view))
     else this.give(command)
   }
@@ -72,9 +69,10 @@ class Panel {
     const folded = element('panel').classList.toggle('folded')
     document.querySelector('[data-own="fold panel"]').textContent = folded ? '+' : '\u2212'
   }
-  // What the panel covers of the page's width.
+  // What the panel covers of the page's width. The picture ends above the strip of a timeline.
   covered() {
-    const left = document.querySelector(':is(#form-ways, #form-course):not([hidden])')
+    const left = document.querySelector(':is(#form-ways, #form-course, #form-edit):not([hidden])'), strip = element('form-timeline')
+    document.body.style.setProperty('--bar', strip?.clientHeight ? strip.clientHeight + 'px' : '')
     if (left) return left.getBoundingClientRect().right / innerWidth
     const panel = element('panel')
     return panel.classList.contains('folded') ? 0 : Math.min(0.4, panel.getBoundingClientRect().right / innerWidth)
@@ -89,7 +87,7 @@ class Panel {
   find(chosen) {
     const words = element('words').value.toLowerCase().split(' ')
     const fits = ({ name, button, help }) => words.every(word => `${name} ${button} ${help}`.toLowerCase().includes(word))
-    this.found = COMMANDS.filter(fits)
+    this.found = commandsHere().filter(fits)
     this.chosen = clamp(chosen, 0, this.found.length - 1)
     element('found').replaceChildren()
     this.found.forEach(({ name, keys, help }, at) => {
@@ -115,11 +113,8 @@ class Panel {
     const hints = element('hints'), touches = { keys: 'finger', text: 'Turns the view, two shift and zoom; held on a hand, it moves it.' }
     const lines = matchMedia('(pointer: coarse)').matches ? [...HINTS.slice(0, -1), touches] : HINTS
     hints.hidden = document.cookie.includes(HINTS_CLOSED)
-    for (const { keys, text } of [...lines, { keys: 'F3, ?', text: 'Finds any command, and lists the keys.' }]) {
-      const line = make('p', hints)
-      make('b', line, { textContent: keys })
-      make('span', line, { textContent: text })
-    }
+    const all = [...lines, { keys: 'F3, ?', text: 'Finds any command, and lists the keys.' }]
+    hints.innerHTML = all.map(({ keys, text }) => `<p><b>${keys}</b><span>${text}</span></p>`).join('')
     make('button', hints.lastChild, { textContent: 'Do not show again' }).addEventListener('click', () => {
       document.cookie = `${HINTS_CLOSED}; max-age=34560000; samesite=strict`
       hints.hidden = true
@@ -133,11 +128,12 @@ class Panel {
     clearTimeout(this.timer)
     this.timer = setTimeout(() => setText(element('message'), ''), MESSAGE_LASTS)
   }
-  say(words) {
-    element('banner').textContent = words
-    element('banner').hidden = words === ''
+  say(words) { Object.assign(element('banner'), { textContent: words, hidden: words === '' }) }
+  connected(yes, words) {
+    element('form-run').setAttribute('aria-disabled', !yes)
+    if (yes) this.form.showAgain()
+    this.say(words)
   }
-  connected(yes) { element('form-run').setAttribute('aria-disabled', !yes) }
   setModel(model) {
     this.model = model
     element('model').textContent = model.name

@@ -51,14 +51,12 @@ class Scene {
     this.capsuleArray = makeArray(gl, [[shape, 4], ...ends], makeBuffer(gl, gl.ELEMENT_ARRAY_BUFFER, corners, gl.STATIC_DRAW))
   }
 
-  // fetchPicture, changed: as Paint takes them.
-  setModel(model, fetchPicture, changed) {
-    if (this.shape) {
-      this.shape.dispose()
-      this.paint.dispose()
-    }
+  // fetchImage, changed: as Paint takes them.
+  setModel(model, fetchImage, changed) {
+    this.shape?.dispose()
+    this.paint?.dispose()
     this.shape = new Shape(this.gl, model)
-    this.paint = new Paint(this.gl, model, fetchPicture, changed)
+    this.paint = new Paint(this.gl, model, fetchImage, changed)
     this.scale = model.unit / model.unitsPerMetre
     if (this.name !== model.name) this.findPlace(model) // a new connection does not move the picture
     this.name = model.name
@@ -129,19 +127,16 @@ class Scene {
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height })
   }
 
-  // covered: what the panel covers of the width.
-  draw(camera, update, holds, covered) {
+  draw(camera, update, holds) {
     const { gl, canvas } = this
     this.resize()
     const round = way => turned(turnAbout([0, 1, 0], camera.azimuth), unit(way))
-    camera.covered = covered
     const aspect = canvas.width / Math.max(1, canvas.height)
     this.view = {
       clip_of_world: camera.projection(aspect), eye: camera.eye(),
       key: round([-0.55, 0.75, 0.55]), fill: round([0.85, 0.25, 0.50]), rim: round([0.45, 0.45, -0.80]),
     }
     gl.viewport(0, 0, canvas.width, canvas.height)
-    gl.clearColor(0, 0, 0, 0)
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT)
     gl.enable(gl.DEPTH_TEST)
     gl.enable(gl.BLEND)

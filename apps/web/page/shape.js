@@ -80,7 +80,8 @@ class Shape {
   // held: of each vertex, 0 to 255.
   setHeld(held) { fillBuffer(this.gl, this.held, forDrawn(held, 1, this.seams)) }
 
-  takeWeights(weights) { Object.assign(this, { weights, pending: NOTHING }) } // what was pending was for the previous ones
+  // What was pending was for the previous ones.
+  takeWeights(weights) { if (weights.counts.length === this.model.vertices) Object.assign(this, { weights, pending: NOTHING }) }
 
   takeStep(step) {
     if (step.weights !== null && (!this.weights || step.weights !== this.weights.number)) return

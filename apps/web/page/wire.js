@@ -184,7 +184,7 @@ function readUpdate(buffer, model) {
   from.at = 72
   return {
     letGo: [has(state, 16), has(state, 32)], symmetric: has(state, 64), isPuppet: has(state, 128), held: has(state, 1),
-    number, ticks, restChanges, jumps, maxLate, sinceLast, unseen: lost + skipped, bytes: buffer.byteLength,
+    number, ticks, restChanges, jumps, maxLate, sinceLast, unseen: lost + skipped,
     hands: [0, 1].map(slot => has(bits, 1 << slot) ? {
       ...readHand(from, model.bones[slot][has(bits, 16 << slot) ? 1 : 0]), silent: has(bits, 4 << slot),
     } : null),

@@ -4,12 +4,12 @@
 
 #include <doctest/doctest.h>
 
-#include "viewer/timeline_view.hpp"
+#include "forms/timeline_view.hpp"
 
 namespace dope_sheet_test {
 
 using namespace nendo;
-using namespace nendo::viewer;
+using namespace nendo::forms;
 
 namespace {
 

@@ -1,9 +1,9 @@
-#include "viewer/timeline_view.hpp"
+#include "forms/timeline_view.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace nendo::viewer {
+namespace nendo::forms {
 
 double DopeSheet::span_px() const noexcept {
   return std::max(1.0, width_ - left - right);
@@ -112,4 +112,4 @@ double DopeSheet::ruler_step_s() const noexcept {
   return 10.0 * power;
 }
 
-} // namespace nendo::viewer
+} // namespace nendo::forms

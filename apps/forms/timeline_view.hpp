@@ -1,6 +1,6 @@
 #pragma once
-// The contents of the timeline window, and the user's actions there, as plain data. The window is
-// independent of timelines, and the editor of the window.
+// What the controls of a timeline show, and the user's actions there, as plain data. The controls
+// are independent of timelines, and the editor of the controls.
 
 #include <cstddef>
 #include <memory>
@@ -16,7 +16,7 @@
 #include "commands/edit_command.hpp"
 #include "render/image.hpp"
 
-namespace nendo::viewer {
+namespace nendo::forms {
 
 /// A hand's keys.
 struct StripLane {
@@ -169,4 +169,4 @@ struct EditActions {
   bool quit = false; ///< applied last
 };
 
-} // namespace nendo::viewer
+} // namespace nendo::forms
